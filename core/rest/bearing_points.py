@@ -99,9 +99,13 @@ def curvatures(mesh: TetMesh, places: Array, normals: Array, around: float) -> A
     """
     centres = mesh.nodes[mesh.surface_triangles].mean(axis=1)
     faces, areas = face_normals(mesh), face_areas(mesh)
-    near = cKDTree(centres).query_ball_point(places, around)
-    place = np.repeat(np.arange(len(places)), [len(few) for few in near])
-    triangle = np.concatenate([np.asarray(few, np.int64) for few in near])
+    tree = cKDTree(centres)
+    place = np.repeat(
+        np.arange(len(places)), tree.query_ball_point(places, around, return_length=True)
+    )
+    triangle = np.concatenate(
+        [np.asarray(few, np.int64) for few in tree.query_ball_point(places, around)]
+    )
     alike = np.einsum("kx,kx->k", normals[place], faces[triangle]) > np.cos(CREASE_ANGLE)
     place, triangle = place[alike], triangle[alike]
     frames = np.stack(_across(normals), axis=1)[place]

@@ -14,8 +14,9 @@ from palpate_servo import Tool as NativeTool
 from ..body.soft_body import SoftBody
 from ..contact.tool.native_tool import native_shape, native_surface
 from ..contact.tool.pose import Pose
+from ..contact.tool.tool_surface import Touchable
 from ..errors import PalpateError
-from .bearing_points import Touchable, even_points
+from .bearing_points import even_points
 from .rest_settings import USUAL_REST, RestSettings
 from .support import Floor, Support
 

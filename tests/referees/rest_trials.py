@@ -19,7 +19,8 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import Tool, plate, sphere
 from palpate.core.rest.rest import Rest
-from palpate.core.rest.resting import Resting, RestSettings
+from palpate.core.rest.rest_settings import RestSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 from palpate.tests.bodies.free_shapes import free_ball, free_block
 

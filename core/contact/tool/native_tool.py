@@ -52,7 +52,7 @@ def native_tool(
     Parameters
     ----------
     native : of ``native_body(body, whole=True)``, the one that the servo touches.
-    touchable : the points that the tool can press, and their near field; None for those it asks for.
+    touchable : points that the tool can press, and their near field; None for those it asks for.
 
     Raises
     ------

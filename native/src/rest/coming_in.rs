@@ -1,7 +1,7 @@
 //! How a body that rested elsewhere, or before, goes on from there.
 
 use super::finger::Finger;
-use super::resting::{Resting, Restless, SHORTEST, have_stayed};
+use super::resting::{AT_GOAL, Resting, Restless, SHORTEST, have_stayed};
 
 /// What comes in does so in ticks that are so short beside the shortest others.
 const INSTANT: f64 = 1e-3;
@@ -33,7 +33,7 @@ impl Resting {
             self.tick(instant, false)?;
             self.prop.placement = placement;
             let now = self.wrenches();
-            if self.are_at_goals() && have_stayed(&before, &now) {
+            if self.are_at_goals(AT_GOAL) && have_stayed(&before, &now) {
                 break;
             }
             before = now;

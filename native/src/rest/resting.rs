@@ -38,8 +38,11 @@ const QUIET_TICKS: usize = 3;
 /// Ticks that it is given, and how many times its size it may go meanwhile.
 const MOST_TICKS: usize = 20_000;
 const MOST_SIZES: f64 = 20.0;
+/// After all of its ticks so much may be left: a ball on a floor rolls ever so slowly to where its mesh
+/// is softest.
+const CREEPING: f64 = 1e-5;
 /// Tools are at their goals if they miss them by this share of the body's size.
-const AT_GOAL: f64 = 1e-9;
+pub(super) const AT_GOAL: f64 = 1e-9;
 
 /// Why a body does not rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -200,6 +203,9 @@ impl Resting {
             };
             dt = (dt * most).clamp(SHORTEST * longest, longest);
         }
+        if self.are_at_goals(CREEPING) && self.left_of(&before) <= CREEPING {
+            return Ok(());
+        }
         Err(Restless::Moving(self.time, speed))
     }
 
@@ -222,8 +228,8 @@ impl Resting {
         })
     }
 
-    /// Whether tools and supports are where they are to be.
-    pub(super) fn are_at_goals(&self) -> bool {
+    /// Whether tools and supports are where they are to be, but for a share of the body's size.
+    pub(super) fn are_at_goals(&self, share: f64) -> bool {
         let placement = &self.prop.placement;
         let supports = self.prop.supports.iter();
         let supports = supports.map(|support| (&support.collider, &support.pose));
@@ -234,7 +240,7 @@ impl Resting {
         tools.chain(supports).all(|(tool, goal)| {
             tool.pose().is_some_and(|pose| {
                 let (way, turn) = pose.way_to(&placement.to_body(goal));
-                way.length() <= AT_GOAL * self.prop.body.size() && turn.length() <= AT_GOAL
+                way.length() <= share * self.prop.body.size() && turn.length() <= share
             })
         })
     }
@@ -252,14 +258,24 @@ impl Resting {
 
     /// Whether the wrenches on the body cancel and stay.
     fn is_quiet(&self, before: &[DVec3], now: &[DVec3]) -> bool {
-        let weight = self.prop.gravity * self.prop.free.mass;
-        let largest = largest(now).max(weight.length());
+        self.are_at_goals(AT_GOAL)
+            && self.left_of(now) <= AT_REST
+            && change(before, now) <= SETTLED * largest(now).max(self.weight().length())
+    }
+
+    /// What is left of all wrenches on the body, as a share of the largest force.
+    fn left_of(&self, forces: &[DVec3]) -> f64 {
+        let weight = self.weight();
+        let largest = largest(forces).max(weight.length());
         let (force, torque) = self.wrench();
         let left = force + self.prop.placement.direction_to_body(weight);
-        self.are_at_goals()
-            && left.length() <= AT_REST * largest
-            && torque.length() <= AT_REST * largest * self.prop.body.size()
-            && change(before, now) <= SETTLED * largest
+        let most = left.length().max(torque.length() / self.prop.body.size());
+        if most == 0.0 { 0.0 } else { most / largest }
+    }
+
+    /// In the world, N.
+    fn weight(&self) -> DVec3 {
+        self.prop.gravity * self.prop.free.mass
     }
 }
 
