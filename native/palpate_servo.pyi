@@ -913,6 +913,56 @@ class CubicPlaces:
         12, 20, 21); in its middle. ValueError for arrays of another shape.
         """
 
+@final
+class Relaxation:
+    """A body of 1 Pa on its f free nodes, relaxed under forces; see `native/src/solid/`.
+
+    ``terms`` of its strain energy: where the entries of each domain begin, their nodes, gradients
+    (q, 3), and Lame's first parameter and shear modulus times volume, of each domain. The factors
+    of the stiffness and of the warp's Poisson equation as `CholeskyFactor.flat` makes them.
+    ``foam``: exponent of a foam's energy of volume, None for rubber. ``springs``: a symmetric
+    matrix (f, f) by rows. ValueError for arrays that do not fit together. All vectors are (f, 3).
+    """
+
+    def __new__(
+        cls,
+        terms: Sequence[tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike]],
+        stiffness: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike],
+        poisson: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike],
+        *,
+        foam: float | None = None,
+        springs: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
+    ) -> Self: ...
+    def another(self) -> Relaxation:
+        """The same body, for another thread."""
+
+    def warped(self, linear: ArrayLike) -> NDArray[np.float64]:
+        """Linear displacements in rotation-strain coordinates."""
+
+    def pulled_back(self, linear: ArrayLike, forces: ArrayLike) -> NDArray[np.float64]:
+        """The transposed derivative of the warp there, of nodal forces."""
+
+    def energy_and_forces(self, displacements: ArrayLike) -> tuple[float, NDArray[np.float64]]:
+        """Strain energy, and the forces that hold the nodes there."""
+
+    def relaxed(
+        self,
+        linear: ArrayLike,
+        forces: ArrayLike,
+        steps: int,
+        turning: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """Displacements after so many steps from the linear ones of a load: ``forces`` that keep
+        their directions and ``turning`` ones that work on the linear displacements.
+        """
+
+    def at_rest(
+        self, linear: ArrayLike, forces: ArrayLike, close: float, most_steps: int
+    ) -> tuple[NDArray[np.float64], float, int]:
+        """Displacements where what is unbalanced would move at most a share ``close`` of what the
+        load does, by energy, or where the steps end; what is left, and steps.
+        """
+
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:
     """The coupling for devices with motors of which nothing but the encoders' step at the handle
     (m) is known: see docs/stability.md. ValueError for a rate or a step without sense.

@@ -87,6 +87,7 @@ fingers
 engine
 rest
 servo
+solid
 harness
 python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/rest
 python/servo python/harness python

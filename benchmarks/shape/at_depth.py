@@ -48,8 +48,7 @@ from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.contact.touches import Touch
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.meeting import FingerLoad, settled
-from palpate.core.shape.rotation_strain.relaxation import Relaxation
-from palpate.core.shape.rotation_strain.rotation_strain_shape import relaxation
+from palpate.core.shape.rotation_strain.relaxation import Relaxation, relaxation
 from palpate.core.shape.shapes import Shape, shape
 from palpate.core.softness.parallel_rays import thickness
 from palpate.tests.bodies.baked_body import baked_body
@@ -200,7 +199,7 @@ class Bench:
         wanted = float((forces * solid.linear(forces)).sum())
         models: list[Moved] = [
             Span.of(solid, forces),
-            Relaxed(solid, self.relaxation, forces),
+            Relaxed(self.relaxation, forces),
         ]
         for model in models:
             yield load_share(forces, wanted, model)

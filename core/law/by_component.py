@@ -46,24 +46,6 @@ def symmetric_part(matrices: Array) -> Array:
     return symmetric
 
 
-def axial(matrices: Array) -> Array:
-    """The vector w of A - A^T = [w]x, twice the rotation where A is a small displacement's."""
-    a = matrices
-    found = np.empty((3, a.shape[2]))
-    np.subtract(a[2, 1], a[1, 2], out=found[0])
-    np.subtract(a[0, 2], a[2, 0], out=found[1])
-    np.subtract(a[1, 0], a[0, 1], out=found[2])
-    return found
-
-
-def cross_matrices(vectors: Array) -> Array:
-    """[w]x, so that [w]x a = w x a."""
-    found = np.zeros((3, 3, vectors.shape[1]))
-    found[2, 1], found[0, 2], found[1, 0] = vectors
-    found[1, 2], found[2, 0], found[0, 1] = -vectors
-    return found
-
-
 def cross(a: Array, b: Array) -> Array:
     """The vector product a x b."""
     found: Array = a[NEXT] * b[LAST]
@@ -83,14 +65,3 @@ def determinants(matrices: Array) -> Array:
     """Det A, (d,)."""
     found: Array = np.einsum("id,id->d", matrices[0], cross(matrices[1], matrices[2]))
     return found
-
-
-def inverse_above_identity(matrices: Array) -> Array:
-    """A^-1 of symmetric A whose eigenvalues are 1 or more.
-
-    So the determinant is at least 1 and no entry of the inverse is larger, which rounding would not
-    keep where the eigenvalues differ by many orders of magnitude.
-    """
-    rows = cofactors(matrices)
-    rows /= np.maximum(np.einsum("id,id->d", matrices[0], rows[0]), 1.0)
-    return np.clip(rows, -1.0, 1.0, out=rows)

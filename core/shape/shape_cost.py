@@ -56,11 +56,11 @@ def _rotation_strain(size: BodySize) -> ShapeCost:
     if plan.lattice_nodes:
         lattice = BodySize(plan.lattice_nodes, 0, 0)
         # Each of a lattice's nodes, in every frame and in every step.
-        frame = _linear_seconds(size) + plan.lattice_nodes * (4e-6 + 3e-6 * plan.steps)
+        frame = _linear_seconds(size) + plan.lattice_nodes * (4e-6 + 2e-6 * plan.steps)
         return ShapeCost(frame, 0.1 + 5e-5 * size.nodes, 0.0, 4 * _factor_bytes(lattice))
-    frame = (1 + plan.steps) * _solve_seconds(size) + plan.steps * 9e-7 * size.tets
+    frame = _solve_seconds(size) + plan.steps * 1.8e-6 * size.nodes
     # Beside the factor of the stiffness one of the Poisson equation that puts the tets together.
-    first = _factor_seconds(size) + 0.04 * _grown(size, 1.7)
+    first = 2 * _factor_seconds(size)
     return ShapeCost(frame, first, 0.0, 1.3 * _factor_bytes(size) + 200.0 * size.tets)
 
 

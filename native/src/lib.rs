@@ -25,4 +25,5 @@ pub mod proxy;
 mod python;
 pub mod rest;
 pub mod servo;
+pub mod solid;
 pub mod tool;

@@ -26,8 +26,8 @@ MOST_TRIES = 12
 # The share changes by no more at once; the change is halved where no rest is found.
 LARGEST_CHANGE = 0.3
 # Steps towards rest, and what may be left: what the unbalanced forces would move, in energy.
-STEPS = (6, 12, 24)
-REST = 0.01
+MOST_STEPS = 100
+REST = 0.002
 # Share of the displacement at which its derivative is taken, and of the coefficients theirs.
 LITTLE = 1e-3
 FOUND = 1e-5
@@ -54,20 +54,13 @@ def load_share(forces: Array, wanted: float, moved: Moved) -> float:
 class Relaxed:
     """The shape *rotation-strain* of the body's own nodes, relaxed until it rests."""
 
-    solid: FreeSolid
     relaxation: Relaxation
     forces: Array
 
     def __call__(self, share: float) -> Array | None:
         """Displacements (f, 3) under a share of the load."""
-        load = share * self.forces
-        whole = float((load * self.solid.linear(load)).sum())
-        for steps in STEPS:
-            moved = self.relaxation.relaxed(np.ascontiguousarray(load.T), steps).T
-            left = load - self.solid.forces(moved)
-            if float((left * self.solid.linear(left)).sum()) <= REST**2 * whole:
-                return moved
-        return None
+        rest = self.relaxation.at_rest(share * self.forces, REST, MOST_STEPS)
+        return rest.displacements if rest.left <= REST else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ fronts are those of :mod:`.numeric`, without loads.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,13 @@ from .extend_add import Run, extend_add, runs_between
 from .numeric import EntriesByFront, targets_of_child
 from .upper_tiles import UpperTiles, tile_edges
 from .work import FrontWork
+
+# The freedoms in order of elimination; of each front its size and how many others it reaches;
+# these, as places in the order; of each front the rows, from the diagonal, there the inverse, over
+# its own and these.
+FlatFactor: TypeAlias = tuple[
+    NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.floating]
+]
 
 
 class NotPositiveDefiniteError(Exception):
@@ -45,6 +53,28 @@ class CholeskyFactor:
     def nbytes(self) -> int:
         """Bytes of the factor."""
         return sum(front.pivots.nbytes + front.border.nbytes for front in self.fronts)
+
+    def flat(self, precision: type[np.floating], every: int = 1) -> FlatFactor:
+        """R as one array, for the native code.
+
+        ``every`` 3 takes one of three freedoms, where the matrix has the same number for each axis.
+        """
+        order, boundaries, sizes, reaches, entries = self.order[::every] // every, [], [], [], []
+        for front in self.fronts:
+            pivots, border = front.pivots[::every, ::every], front.border[::every, ::every]
+            rows = np.hstack([pivots, border])
+            np.fill_diagonal(rows, 1.0 / np.diagonal(rows))
+            entries.append(rows[np.triu_indices(len(rows), 0, rows.shape[1])].astype(precision))
+            sizes.append(len(pivots))
+            reaches.append(border.shape[1])
+            boundaries.append(front.boundary[::every] // every)
+        return (
+            order,
+            np.array(sizes),
+            np.array(reaches),
+            np.concatenate(boundaries),
+            np.concatenate(entries),
+        )
 
     def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
         """Solution for right-hand sides (3n,) or (3n, k), of the same shape; thread-safe."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
-from .relaxation import Relaxation, by_component
+from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
 
@@ -34,8 +34,8 @@ class FramePlan:
 
 
 # For bodies of at most so many free nodes, and for all others: what a frame of 60 Hz holds.
-PLANS = ((600, FramePlan(3)), (1200, FramePlan(2)), (3000, FramePlan(2, 600)))
-PLAN_OF_LARGE = FramePlan(2, 1000)
+PLANS = ((600, FramePlan(4)), (1200, FramePlan(3)), (2000, FramePlan(2)))
+PLAN_OF_LARGE = FramePlan(2, 1200)
 
 
 def frame_plan(free_nodes: int) -> FramePlan:
@@ -151,8 +151,7 @@ class _OnOwnNodes:
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         held = self.solid.on_free_nodes(nodes, forces)
-        moved = self.relaxation.relaxed(np.ascontiguousarray(held.T), self.steps)
-        return np.ascontiguousarray(moved[:, self.solid.surface].T)
+        return self.relaxation.relaxed(held, self.steps)[self.solid.surface]
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,8 +167,3 @@ class _OnLattice:
         places = self.body.free_index(nodes)
         free = places >= 0
         return self.levels.corrected(linear, places[free], forces[free], self.steps)
-
-
-def relaxation(solid: FreeSolid) -> Relaxation:
-    """Relaxation of a body's shape."""
-    return Relaxation.of(solid.solid.terms, solid.solid.law, by_component(solid.factor))

@@ -24,12 +24,13 @@ from scipy.sparse import csr_array
 
 from ...body.soft_body import SoftBody
 from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
-from ...law.by_component import Array
 from ...stiffness.assembly import lame_parameters
 from ...stiffness.held_pins import pins_checked
 from .coarse_solid import CoarseSolid, by_axes, spring_of_each
 from .lattice import lattice_of
-from .relaxation import Load, Relaxation, Solve, by_component
+from .relaxation import Relaxation
+
+Array = NDArray[np.float64]
 
 # How stiffly the lattice follows the surface, in shear moduli times edge for each part.
 FOLLOWING = 1.0
@@ -45,13 +46,13 @@ class TwoLevels:
     ----------
     surface : csr (n, c), P: displacements of the lattice's nodes taken to the free surface.
     following : csr (c, n), its transpose times the springs by which the lattice follows.
-    follow : solves for the lattice's displacements (3, c) from forces on it.
+    follow : factor by which the lattice's displacements come from forces on it.
     relaxation : of the lattice.
     """
 
     surface: csr_array
     following: csr_array
-    follow: Solve
+    follow: CholeskyFactor
     relaxation: Relaxation
 
     @classmethod
@@ -76,9 +77,9 @@ class TwoLevels:
         followed = _factor(at_rest + by_axes(csr_array(following @ surface)), lattice.positions)
         solved = _factor(at_rest, lattice.positions)
         relaxation = Relaxation.of(
-            coarse.solid.terms, coarse.solid.law, by_component(solved), coarse.springs
+            coarse.solid.terms, coarse.solid.law, solved, lattice.positions, coarse.springs
         )
-        return cls(surface, following, by_component(followed), relaxation)
+        return cls(surface, following, followed, relaxation)
 
     def corrected(
         self,
@@ -95,26 +96,22 @@ class TwoLevels:
         places, forces : (k,), (k, 3), on which of the free surface nodes, at unit modulus.
         steps : towards equilibrium.
         """
-        load = _components(self.surface[places].T @ forces)
-        v = self.follow(load + _components(self.following @ linear))
-        held = load + _components(self.following @ (linear - self.surface @ v.T))
+        load = self.surface[places].T @ forces
+        v = self.follow.solve((load + self.following @ linear).ravel()).reshape(-1, 3)
+        held = load + self.following @ (linear - self.surface @ v)
         dead = _stiffer(held, load, v) * load
-        w = self.relaxation.relaxed_from(v, Load(dead, held - dead), steps)
-        moved: NDArray[np.float64] = linear + self.surface @ (w - v).T
+        w = self.relaxation.relaxed_from(v, dead, steps, held - dead)
+        moved: Array = linear + self.surface @ (w - v)
         return moved
 
 
 def _stiffer(held: Array, load: Array, moved: Array) -> float:
     """Stiffness of a lattice relative to its body: work of its constraints over the load's."""
     least, most = STIFFER
-    own, all_work = (float(np.einsum("ic,ic->", forces, moved)) for forces in (load, held))
+    own, all_work = (float(np.vdot(forces, moved)) for forces in (load, held))
     if all_work >= most * own:
         return most
     return max(all_work / own, least)
-
-
-def _components(rows: NDArray[np.float64]) -> Array:
-    return np.ascontiguousarray(rows.T)
 
 
 def _factor(matrix: csr_array, positions: NDArray[np.float64]) -> CholeskyFactor:

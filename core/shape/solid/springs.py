@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from scipy.sparse import csr_array
 
-from ...law.by_component import Array
-
 
 @dataclass(frozen=True, eq=False)
 class Springs:
@@ -20,8 +18,3 @@ class Springs:
     """
 
     matrix: csr_array
-
-    def forces(self, displacements: Array) -> Array:
-        """S u, (3, f), of displacements (3, f)."""
-        found: Array = (self.matrix @ displacements.T).T
-        return found

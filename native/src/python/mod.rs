@@ -7,6 +7,7 @@ mod engine;
 mod harness;
 mod rest;
 mod servo;
+mod solid;
 mod tool;
 mod vectors;
 
@@ -37,6 +38,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<engine::ContactEngine>()?;
     module.add_class::<rest::prop::Prop>()?;
     module.add_class::<rest::resting::Resting>()?;
+    module.add_class::<solid::Relaxation>()?;
     module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::polygons_on_line, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::nearest_polygon, module)?)?;

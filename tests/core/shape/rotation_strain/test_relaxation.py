@@ -5,9 +5,12 @@ import pytest
 from bodies.bare_body import bare_body, beam_mesh
 from referees.jumps import jump_left
 
+from palpate.core.errors import PalpateError
+from palpate.core.law.foam import Foam, FoamTerm
+from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.shape.rotation_strain.relaxation import step_length
-from palpate.core.shape.rotation_strain.rotation_strain_shape import frame_plan, relaxation
+from palpate.core.shape.rotation_strain.relaxation import relaxation
+from palpate.core.shape.rotation_strain.rotation_strain_shape import frame_plan
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium
 
@@ -27,7 +30,7 @@ def end_load(solid, share, direction=(0.0, 0.0, 1.0)):
 
 
 def relaxed(solid, forces, steps):
-    return relaxation(solid).relaxed(np.ascontiguousarray(forces.T), steps).T
+    return relaxation(solid).relaxed(forces, steps)
 
 
 def distance(a, b):
@@ -89,7 +92,7 @@ def test_it_depends_continuously_on_the_forces(steps):
     for forces in (load, crush, twist):
 
         def shape(share, forces=forces):
-            return relaxing.relaxed(np.ascontiguousarray((share * forces).T), steps)
+            return relaxing.relaxed(share * forces, steps)
 
         assert jump_left(shape, np.linspace(0.0, 1.5, 61), looks=4) < 0.02
 
@@ -112,43 +115,90 @@ def test_absurd_forces_give_numbers(direction):
 
 
 @pytest.mark.parametrize(
-    ("start", "slope", "end", "share"),
-    [
-        (0.0, -2.0, -1.0, 1.0),  # its lowest point is the end
-        (0.0, -2.0, -2.0, 1.0),  # no bend: falls on
-        (0.0, -2.0, -3.0, 1.0),  # bent the other way
-        (0.0, -2.0, 0.0, 0.625),  # lowest half way
-        (0.0, -2.0, 1e9, 0.05),
-        (3.0, 0.0, 3.0, 1.0),  # has arrived
-    ],
+    ("poisson_ratio", "formulation"),
+    [(0.45, "linear"), (0.45, "smoothed"), (0.0, "smoothed"), (-0.3, "linear"), (-0.3, "smoothed")],
 )
-def test_steps_end_where_the_parabola_is_lowest_and_a_little_beyond(start, slope, end, share):
-    assert step_length(start, slope, end) == pytest.approx(share)
-
-
-@pytest.mark.parametrize("formulation", ["linear", "smoothed"])
-def test_energy_and_forces_are_those_of_the_solid(formulation, rng):
-    solid = beam(0.45, formulation)
-    moved = 0.02 * rng.normal(size=(solid.node_count, 3))
+@pytest.mark.parametrize("size", [1e-9, 1e-3, 0.02])
+def test_energy_and_forces_are_those_of_the_laws_in_numpy(poisson_ratio, formulation, size, rng):
+    solid = beam(poisson_ratio, formulation)
+    moved = size * rng.normal(size=(solid.node_count, 3))
     assert min(solid.volume_ratios(moved)) > 0.0
-    energy = relaxation(solid).energy
-    there = energy.stressed(np.ascontiguousarray(moved.T))
-    assert there.energy == pytest.approx(solid.energy(moved), rel=1e-12)
+    energy, forces = relaxation(solid).native.energy_and_forces(moved)
+    assert energy == pytest.approx(solid.energy(moved), rel=1e-11 if poisson_ratio >= 0 else 1e-6)
     expected = solid.forces(moved)
-    np.testing.assert_allclose(
-        energy.forces(there).T, expected, atol=1e-12 * np.abs(expected).max()
-    )
+    # numpy's foam, by the stretches of an SVD, has lost what is below its rounding.
+    lost = 1e-15 / size if poisson_ratio < 0.0 else 0.0
+    np.testing.assert_allclose(forces, expected, atol=(1e-11 + lost) * np.abs(expected).max())
 
 
-def test_forces_are_the_slope_of_the_energy_where_domains_collapse(rng):
-    solid = beam()
-    energy = relaxation(solid).energy
-    moved, way = 0.1 * rng.normal(size=(2, 3, solid.node_count))
-    ratios = solid.volume_ratios(moved.T)
+@pytest.mark.parametrize("poisson_ratio", [0.3, -0.3])
+def test_forces_are_the_slope_of_the_energy_where_domains_collapse(poisson_ratio, rng):
+    solid = beam(poisson_ratio)
+    native = relaxation(solid).native
+    moved, way = 0.1 * rng.normal(size=(2, solid.node_count, 3))
+    ratios = solid.volume_ratios(moved)
     assert min(ratios) < 0.0 < max(ratios)
-    ends = [energy.stressed(moved + sign * 1e-6 * way).energy for sign in (1, -1)]
-    slope = (energy.forces(energy.stressed(moved)) * way).sum()
+    ends = [native.energy_and_forces(moved + sign * 1e-6 * way)[0] for sign in (1, -1)]
+    slope = (native.energy_and_forces(moved)[1] * way).sum()
     assert slope == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("poisson_ratio", "formulation"), [(0.3, "linear"), (0.45, "smoothed"), (-0.3, "linear")]
+)
+@pytest.mark.parametrize("share", [0.05, 0.3, 1.0])
+def test_rest_is_newtons_equilibrium(poisson_ratio, formulation, share):
+    solid = beam(poisson_ratio, formulation)
+    for forces in (end_load(solid, share), end_load(solid, share, (1.0, 0.2, 0.0))):
+        rest = relaxation(solid).at_rest(forces, 1e-7, 200)
+        assert rest.left <= 1e-7
+        truth = equilibrium(solid, forces).displacements
+        assert distance(rest.displacements, truth) < 1e-6
+
+
+def test_rest_is_found_where_a_press_crushes_what_it_presses():
+    solid = beam(0.45, "smoothed")
+    middle = np.linalg.norm(solid.positions - [LENGTH / 4, 0.5, 1.0], axis=1).argmin()
+    forces = np.zeros((solid.node_count, 3))
+    forces[middle] = [0.0, 0.0, -1.0]
+    forces *= 2.0 / np.abs(solid.linear(forces)).max()
+    rest = relaxation(solid).at_rest(forces, 1e-6, 400)
+    assert rest.left <= 1e-6
+    unbalanced = np.abs(solid.forces(rest.displacements) - forces).max()
+    assert unbalanced < 1e-4 * np.abs(forces).max()
+
+
+def test_a_search_that_is_cut_short_says_what_is_left():
+    solid = beam()
+    forces = end_load(solid, 1.0)
+    some, more = (relaxation(solid).at_rest(forces, 1e-9, steps) for steps in (1, 4))
+    assert (some.steps, more.steps) == (1, 4)
+    assert some.left > more.left > 1e-9
+
+
+def test_two_threads_relax_one_body_each_in_its_own_room():
+    solid = beam()
+    one = relaxation(solid)
+    other = one.another()
+    forces = end_load(solid, 0.3)
+    expected = one.relaxed(forces, 2)
+    other.relaxed(2.0 * forces, 3)
+    np.testing.assert_array_equal(one.relaxed(forces, 2), expected)
+    np.testing.assert_array_equal(other.relaxed(forces, 2), expected)
+
+
+def test_laws_that_are_not_known_are_refused():
+    for law in (StVenantKirchhoff(), Foam(0.1, (FoamTerm(0.5, 2.0), FoamTerm(0.5, -4.0)))):
+        mesh, fixed = beam_mesh(2, LENGTH, 0)
+        with pytest.raises(PalpateError, match="Newton"):
+            relaxation(FreeSolid.of(bare_body(mesh, fixed, 0.1, "linear"), law))
+
+
+def test_arrays_that_do_not_fit_are_refused():
+    solid = beam()
+    native = relaxation(solid).native
+    with pytest.raises(ValueError, match="a row for each free node"):
+        native.warped(np.zeros((solid.node_count + 1, 3)))
 
 
 def test_a_press_on_one_node_does_not_turn_the_body_inside_out():
@@ -167,6 +217,6 @@ def test_a_press_on_one_node_does_not_turn_the_body_inside_out():
 
 def test_small_bodies_get_more_steps_and_large_ones_a_lattice():
     plans = [frame_plan(count) for count in (100, 1000, 1700, 20_000)]
-    assert [plan.steps for plan in plans[:2]] == [3, 2]
-    assert [plan.lattice_nodes > 0 for plan in plans] == [False, False, True, True]
+    assert [plan.steps for plan in plans[:2]] == [4, 3]
+    assert [plan.lattice_nodes > 0 for plan in plans] == [False, False, False, True]
     assert all(plan.steps >= 1 for plan in plans)

@@ -1,0 +1,293 @@
+//! From a linear displacement towards equilibrium, and to it.
+//!
+//! The energy of body and load is minimised as a function of the *linear* displacement v that is warped
+//! to u = W(v):
+//!
+//!     p(v) = U(W(v)) - F . W(v)
+//!
+//! In these coordinates it is nearly the quadratic function v.Kv / 2 - F.v whatever the rotations, and
+//! quasi-Newton steps from K^-1 come close in very few: where steps in u have to undo each rotation's false
+//! stretch, these turn what they move.
+
+use std::sync::Arc;
+
+use super::domains::Nodal;
+use super::factor;
+use super::factor::Factor;
+use super::history::{Field, History, add, dot};
+use super::search::{bound, is_enough, shorter, step_length};
+use super::strained::Strained;
+use super::warp::{Room, Turned, Warp};
+
+/// Tries of one step before its direction is given up.
+const MOST_TRIES: usize = 20;
+
+/// A body on its free nodes, ready to be relaxed.
+#[derive(Debug)]
+pub struct Solid {
+    /// Its energy; of the first term's domains the warp is.
+    pub strained: Strained,
+    /// From linear displacements to others.
+    pub warp: Warp,
+    /// Of the stiffness at rest.
+    pub stiffness: Factor<f32>,
+}
+
+impl Solid {
+    /// How many nodes are free.
+    pub fn nodes(&self) -> usize {
+        self.stiffness.len() / 3
+    }
+}
+
+/// Forces on the nodes.
+#[derive(Debug, Clone, Copy)]
+pub struct Load<'a> {
+    /// Those that keep their directions.
+    pub dead: &'a Nodal,
+    /// On the linear displacements, whose work does not change where the body turns.
+    pub turning: Option<&'a Nodal>,
+}
+
+impl Load<'_> {
+    fn work(&self, linear: &Nodal, warped: &Nodal) -> f64 {
+        let turning = self.turning.map_or(0.0, |forces| dot(forces, linear));
+        dot(self.dead, warped) + turning
+    }
+
+    /// Of all of it on a linear displacement.
+    fn linear_work(&self, linear: &Nodal) -> f64 {
+        self.work(linear, linear)
+    }
+
+    fn add_to(&self, times: f64, to: &mut Nodal) {
+        add(to, times, self.dead);
+        if let Some(turning) = self.turning {
+            add(to, times, turning);
+        }
+    }
+}
+
+/// How a search for rest ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rest {
+    /// What the unbalanced forces would still move, as a share of what the load does, by energy.
+    pub left: f64,
+    /// Steps.
+    pub steps: usize,
+}
+
+/// Room to relax a body in.
+#[derive(Debug, Clone)]
+pub struct Relaxation {
+    solid: Arc<Solid>,
+    /// The place: its linear displacement, gradient and potential; warped, with the forces that hold it.
+    pub linear: Field,
+    /// What is drawn.
+    pub warped: Field,
+    slope: Field,
+    potential: f64,
+    forces: Field,
+    turned: Vec<Turned>,
+    history: History,
+    direction: Field,
+    before: Field,
+    start: Field,
+    spare: Field,
+    stiffness: factor::Room<f32>,
+    room: Room,
+}
+
+impl Relaxation {
+    /// For a body.
+    pub fn new(solid: Arc<Solid>) -> Self {
+        let nodes = solid.nodes();
+        let field = vec![[0.0; 3]; nodes];
+        let fours = solid.strained.terms[0].domains.fours();
+        Self {
+            linear: field.clone(),
+            warped: field.clone(),
+            slope: field.clone(),
+            potential: 0.0,
+            forces: field.clone(),
+            turned: vec![Turned::default(); fours],
+            history: History::new(nodes),
+            direction: field.clone(),
+            before: field.clone(),
+            start: field.clone(),
+            spare: field,
+            stiffness: solid.stiffness.room(),
+            room: solid.warp.room(),
+            solid,
+        }
+    }
+
+    /// The body.
+    pub fn solid(&self) -> &Arc<Solid> {
+        &self.solid
+    }
+
+    /// Warps [`Self::linear`].
+    pub fn warp(&mut self) {
+        let strained = &self.solid.strained;
+        let on = (&strained.terms[0].domains, strained.springs.as_ref());
+        let (turned, room) = (&mut self.turned, &mut self.room);
+        (self.solid.warp).warp(on, &self.linear, turned, room, &mut self.warped);
+    }
+
+    /// What forces do on linear displacements, where they were last warped.
+    pub fn pull_back(&mut self, forces: &Nodal, pulled: &mut Nodal) {
+        let strained = &self.solid.strained;
+        let on = (&strained.terms[0].domains, strained.springs.as_ref());
+        (self.solid.warp).pull_back(on, &self.turned, forces, &mut self.room, pulled);
+    }
+
+    /// The shape after so many steps from the linear displacement of a load: a continuous function of
+    /// both, and of nothing else. Without steps it is the warped linear displacement.
+    pub fn relax(&mut self, linear: &Nodal, load: &Load<'_>, steps: usize) {
+        self.linear.copy_from_slice(linear);
+        let work = load.linear_work(linear);
+        if steps == 0 || work == 0.0 {
+            return self.warp();
+        }
+        self.leave_rest(linear, load, work);
+        for step in 1..=steps {
+            let descent = self.direct();
+            let most = bound(work, descent);
+            let (before, slope) = (self.potential, -most * descent);
+            self.before.copy_from_slice(&self.linear);
+            self.start.copy_from_slice(&self.warped);
+            self.go(most, load);
+            let share = step_length(before, slope, self.potential);
+            if step == steps {
+                // On the chord: warping once more would change little.
+                for (end, start) in self.warped.iter_mut().zip(&self.start) {
+                    for axis in 0..3 {
+                        end[axis] = start[axis] + share * (end[axis] - start[axis]);
+                    }
+                }
+                return;
+            }
+            if share < 1.0 {
+                self.go(share * most, load);
+            }
+            self.learn(share * most, load);
+        }
+    }
+
+    /// Steps from the linear displacement of a load until what is unbalanced would move no more than a share
+    /// `close` of what the load does, or until `most` steps are done or none leads on.
+    pub fn rest(&mut self, linear: &Nodal, load: &Load<'_>, close: f64, most: usize) -> Rest {
+        self.linear.copy_from_slice(linear);
+        let work = load.linear_work(linear);
+        if work <= 0.0 {
+            self.warp();
+            return Rest {
+                left: 0.0,
+                steps: 0,
+            };
+        }
+        self.leave_rest(linear, load, work);
+        let mut rest = Rest {
+            left: f64::INFINITY,
+            steps: 0,
+        };
+        loop {
+            let descent = self.direct();
+            rest.left = (descent / work).max(0.0).sqrt();
+            if rest.left <= close || rest.steps == most {
+                return rest;
+            }
+            if !self.step(bound(work, descent), descent, load) {
+                if self.history.is_empty() {
+                    return rest;
+                }
+                // Again by the stiffness at rest alone.
+                self.history.clear();
+            }
+            rest.steps += 1;
+        }
+    }
+
+    /// One step of so much of the direction at most; false where none leads downhill.
+    fn step(&mut self, most: f64, descent: f64, load: &Load<'_>) -> bool {
+        let before = self.potential;
+        self.before.copy_from_slice(&self.linear);
+        let mut share = most;
+        for _ in 0..MOST_TRIES {
+            self.go(share, load);
+            if is_enough(before, -descent, share, self.potential) {
+                self.learn(share, load);
+                return true;
+            }
+            share = shorter(before, -descent, share, self.potential);
+        }
+        self.go(0.0, load);
+        false
+    }
+
+    /// To the place on the way from rest: all of it, or the share where a body hardens.
+    fn leave_rest(&mut self, linear: &Nodal, load: &Load<'_>, work: f64) {
+        self.history.clear();
+        self.arrive(load);
+        let share = step_length(0.0, -work, self.potential);
+        if share < 1.0 {
+            scale(&mut self.linear, share);
+            self.arrive(load);
+        }
+        // At rest the gradient is known without any work, so the way from there counts as a step.
+        self.spare.fill([0.0; 3]);
+        load.add_to(-1.0, &mut self.spare);
+        self.find_slope(load);
+        (self.history).take(share, linear, &self.spare, &self.slope);
+    }
+
+    /// Finds the direction; what it promises, minus its slope.
+    fn direct(&mut self) -> f64 {
+        let (stiffness, room) = (&self.solid.stiffness, &mut self.stiffness);
+        let solve = |right: &Nodal, solution: &mut Nodal| {
+            stiffness.solve_freedoms(right, room, solution);
+        };
+        (self.history).direct(&self.slope, &mut self.spare, &mut self.direction, solve);
+        -dot(&self.slope, &self.direction)
+    }
+
+    /// To a share of the direction from where the step began.
+    fn go(&mut self, share: f64, load: &Load<'_>) {
+        self.linear.copy_from_slice(&self.before);
+        add(&mut self.linear, share, &self.direction);
+        self.arrive(load);
+    }
+
+    /// Keeps a step of this share.
+    fn learn(&mut self, share: f64, load: &Load<'_>) {
+        self.before.copy_from_slice(&self.slope);
+        self.find_slope(load);
+        (self.history).take(share, &self.direction, &self.before, &self.slope);
+    }
+
+    /// Energies and forces at the linear displacement.
+    fn arrive(&mut self, load: &Load<'_>) {
+        self.warp();
+        let energy = (self.solid.strained).energy_and_forces(&self.warped, &mut self.forces);
+        self.potential = energy - load.work(&self.linear, &self.warped);
+    }
+
+    /// The gradient where it has arrived.
+    fn find_slope(&mut self, load: &Load<'_>) {
+        add(&mut self.forces, -1.0, load.dead);
+        let mut slope = std::mem::take(&mut self.slope);
+        let forces = std::mem::take(&mut self.forces);
+        self.pull_back(&forces, &mut slope);
+        (self.slope, self.forces) = (slope, forces);
+        if let Some(turning) = load.turning {
+            add(&mut self.slope, -1.0, turning);
+        }
+    }
+}
+
+fn scale(field: &mut Nodal, by: f64) {
+    for vector in field {
+        *vector = vector.map(|x| by * x);
+    }
+}
