@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::{MOST_POINTS, ROW, room};
+use super::{MOST_POINTS, ROW, panels, room};
 use crate::algebra::wide::{plus_product, widely};
 
 /// Sums that run beside each other, so that no addition waits for the one before.
@@ -125,7 +125,7 @@ impl Factor {
     /// Decomposes the matrix in the rows; false where it is not positive definite to rounding.
     pub fn decompose(&mut self, size: usize) -> bool {
         self.size = size;
-        decompose(&mut self.rows, &mut self.inverse_pivots, size)
+        panels::decompose(&mut self.rows, &mut self.inverse_pivots, size)
     }
 
     /// Takes in the row that was put behind the last; false, and all as before, where the matrix with
@@ -224,7 +224,7 @@ widely! {
 
 /// The square root of a pivot, if it is one.
 #[inline(always)]
-fn root(own: f64, pivot: f64) -> Option<f64> {
+pub(super) fn root(own: f64, pivot: f64) -> Option<f64> {
     // Not a number is not greater.
     (pivot > LEAST_PIVOT * own && pivot.is_finite()).then(|| pivot.sqrt())
 }
@@ -240,34 +240,6 @@ widely! {
             return false;
         };
         (own[0], inverse_pivots[size]) = (pivot, 1.0 / pivot);
-        true
-    }
-}
-
-widely! {
-    /// Column after column, four rows at once: the entries of one column do not wait for each other.
-    fn decompose(rows: &mut [f64], inverse_pivots: &mut [f64], size: usize) -> bool {
-        for j in 0..size {
-            let (above, below) = rows[..size * ROW].split_at_mut((j + 1) * ROW);
-            let (head, own) = above[j * ROW..][..=j].split_at_mut(j);
-            let Some(pivot) = root(own[0], own[0] - dot_within::<FUSED>(head, head)) else {
-                return false;
-            };
-            let inverse = 1.0 / pivot;
-            (own[0], inverse_pivots[j]) = (pivot, inverse);
-            let mut fours = below.chunks_exact_mut(4 * ROW);
-            for four in &mut fours {
-                let row = |k: usize| &four[k * ROW..][..j];
-                let sums = dots::<FUSED, _>([row(0), row(1), row(2), row(3)], head);
-                for (k, sum) in sums.into_iter().enumerate() {
-                    let entry = &mut four[k * ROW + j];
-                    *entry = (*entry - sum) * inverse;
-                }
-            }
-            for row in fours.into_remainder().chunks_exact_mut(ROW) {
-                row[j] = (row[j] - dot_within::<FUSED>(&row[..j], head)) * inverse;
-            }
-        }
         true
     }
 }

@@ -3,6 +3,7 @@
 use glam::DMat3;
 
 pub mod cholesky;
+mod panels;
 pub mod small_matrix;
 pub(crate) mod wide;
 

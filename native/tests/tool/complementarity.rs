@@ -141,6 +141,42 @@ fn put(factor: &mut Factor, place: usize, matrix: &[Vec<f64>], kept: &[usize], i
 }
 
 #[test]
+fn a_factor_of_any_size_solves_its_matrix() {
+    let dice = &mut Dice::new(9);
+    for count in [1, 2, 7, 8, 9, 15, 16, 17, 70, 207, 208, 301] {
+        let (matrix, right) = problem(dice, count, count, 0.1);
+        let all: Vec<usize> = (0..count).collect();
+        let mut factor = Factor::default();
+        for i in 0..count {
+            put(&mut factor, i, &matrix, &all[..i], i);
+        }
+        assert!(factor.decompose(count), "{count}");
+        let mut x = right.clone();
+        factor.solve(&mut x);
+        for i in 0..count {
+            let sum: f64 = matrix[i].iter().zip(&x).map(|(a, x)| a * x).sum();
+            assert!(
+                (sum - right[i]).abs() < 1e-9,
+                "{count} {i}: {sum} {}",
+                right[i]
+            );
+        }
+        // The same row twice is found wherever it lies.
+        if count > 1 {
+            let (first, last) = (count / 3, count - 1);
+            let twice = |i: usize| if i == last { first } else { i };
+            for i in 0..count {
+                let row = factor.row_mut(i);
+                for j in 0..=i {
+                    row[j] = matrix[twice(i)][twice(j)];
+                }
+            }
+            assert!(!factor.decompose(count), "{count}");
+        }
+    }
+}
+
+#[test]
 fn a_factor_kept_up_to_date_is_that_of_the_rows_that_stayed() {
     let dice = &mut Dice::new(8);
     let count = 70;
