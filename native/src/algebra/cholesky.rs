@@ -3,14 +3,9 @@
 
 use std::ops::Range;
 
-use super::{MOST_POINTS, ROW, panels, room};
-use crate::algebra::wide::{plus_product, widely};
-
-/// Sums that run beside each other, so that no addition waits for the one before.
-pub const LANES: usize = 8;
-
-/// A pivot below this share of its diagonal entry is rounding.
-const LEAST_PIVOT: f64 = 1e-13;
+use super::panels::{self, root};
+use super::{MOST_POINTS, ROW, room};
+use crate::algebra::wide::{LANES, plus_product, widely};
 
 widely! {
     /// The sum of products, in a fixed order of additions.
@@ -69,17 +64,17 @@ pub(crate) fn dot_three<const FUSED: bool>(a: [&[f64]; 3], b: [&[f64]; 3]) -> f6
     total::<FUSED>(&lanes, &[], &[]) + rest(0) + rest(1) + rest(2)
 }
 
-/// The sums of products of some rows with one, each as [`dot_within`] has it, to the bit: what is loaded of
+/// The sums of products of three rows with one, each as [`dot_within`] has it, to the bit: what is loaded of
 /// the one serves all.
 #[inline(always)]
-fn dots<const FUSED: bool, const N: usize>(rows: [&[f64]; N], head: &[f64]) -> [f64; N] {
+fn dots<const FUSED: bool>(rows: [&[f64]; 3], head: &[f64]) -> [f64; 3] {
     let n = head.len();
     let rows = rows.map(|row| &row[..n]);
-    let mut lanes = [[0.0; LANES]; N];
+    let mut lanes = [[0.0; LANES]; 3];
     let mut k = 0;
     while k + LANES <= n {
         let y = &head[k..k + LANES];
-        for r in 0..N {
+        for r in 0..3 {
             let x = &rows[r][k..k + LANES];
             for l in 0..LANES {
                 lanes[r][l] = plus_product::<FUSED>(lanes[r][l], x[l], y[l]);
@@ -87,8 +82,8 @@ fn dots<const FUSED: bool, const N: usize>(rows: [&[f64]; N], head: &[f64]) -> [
         }
         k += LANES;
     }
-    let mut sums = [0.0; N];
-    for r in 0..N {
+    let mut sums = [0.0; 3];
+    for r in 0..3 {
         sums[r] = total::<FUSED>(&lanes[r], &rows[r][k..], &head[k..]);
     }
     sums
@@ -201,7 +196,7 @@ widely! {
         for i in range {
             let row = &rows[i * ROW..][first..i];
             let [x, y, z] = [0, 1, 2].map(|k: usize| &columns[k][first..i]);
-            let sums = dots::<FUSED, _>([x, y, z], row);
+            let sums = dots::<FUSED>([x, y, z], row);
             for (column, sum) in columns.iter_mut().zip(sums) {
                 column[i] = (column[i] - sum) * inverse_pivots[i];
             }
@@ -220,13 +215,6 @@ widely! {
             }
         }
     }
-}
-
-/// The square root of a pivot, if it is one.
-#[inline(always)]
-pub(super) fn root(own: f64, pivot: f64) -> Option<f64> {
-    // Not a number is not greater.
-    (pivot > LEAST_PIVOT * own && pivot.is_finite()).then(|| pivot.sqrt())
 }
 
 widely! {

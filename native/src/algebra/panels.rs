@@ -2,8 +2,10 @@
 //! so that no sum lies across a register (Golub and Van Loan 2013, 4.2.6).
 
 use super::ROW;
-use super::cholesky::{LANES, root};
-use super::wide::{plus_product, widely};
+use super::wide::{LANES, plus_product, widely};
+
+/// A pivot below this share of its diagonal entry is rounding.
+const LEAST_PIVOT: f64 = 1e-13;
 
 /// Columns that are decomposed together.
 const PANEL: usize = LANES;
@@ -43,6 +45,13 @@ widely! {
         }
         true
     }
+}
+
+/// The square root of a pivot, if it is one.
+#[inline(always)]
+pub(super) fn root(own: f64, pivot: f64) -> Option<f64> {
+    // Not a number is not greater.
+    (pivot > LEAST_PIVOT * own && pivot.is_finite()).then(|| pivot.sqrt())
 }
 
 /// Decomposes columns from row `range.start` on; their upper triangle, which nobody reads, is filled

@@ -3,6 +3,9 @@
 //! Sums are added up in the order that the code says. Where the processor adds a product in one step,
 //! that is rounded once: results of processors with and without differ by rounding.
 
+/// Sums that run beside each other, so that no addition waits for the one before.
+pub(crate) const LANES: usize = 8;
+
 /// Whether what is not compiled for wide registers adds products in one step.
 pub(crate) const NARROW_FUSED: bool = cfg!(target_arch = "aarch64");
 

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
-use crate::algebra::cholesky::{LANES, dot_three};
-use crate::algebra::wide::{plus_product, widely};
+use crate::algebra::cholesky::dot_three;
+use crate::algebra::wide::{LANES, plus_product, widely};
 
 /// A vector for each slot, an axis after the other.
 pub(in crate::tool) type Vectors = [[f64; MOST_POINTS]; 3];
