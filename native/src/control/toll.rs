@@ -27,6 +27,9 @@ const PAYING: f64 = 0.016;
 const TURNING: f64 = 0.02;
 /// and grows as large as the push, or falls from there, within this one.
 const GROWING: f64 = 0.2;
+/// Where this share of the energy is owed, brakes take back as fast as a push gives, however short the
+/// way has been; and where it is less, a share of that: what fingers have not put in, they do not get out.
+const BORROWED: [f64; 2] = [0.25, 0.75];
 /// This share of the energy may be owed: work adds up from tick to tick to rounding and bends.
 const FREE: f64 = 1.0e-4;
 /// A finger at rest loses its brake within this time, s.
@@ -75,12 +78,13 @@ impl Brake {
         0.5 * self.direction.dot(self.way)
     }
 
-    /// Grows towards a size, at most as large as the push as sent, no faster than the way allows.
-    fn grow(&mut self, size: f64, pressed: &Pressed) {
+    /// Grows towards a size, at most as large as the push as sent, no faster than the way allows; but
+    /// it is at least that share of the push.
+    fn grow(&mut self, size: f64, least: f64, pressed: &Pressed) {
         let most = pressed.felt().length();
         let change = most * self.way.length() / (GROWING * pressed.depth());
         let size = size.clamp(self.size - change, self.size + change);
-        self.size = size.clamp(0.0, most);
+        self.size = size.clamp(least * most, most);
     }
 }
 
@@ -175,10 +179,12 @@ impl<const FINGERS: usize> Toll<FINGERS> {
             }
         }
         let left = (self.debt - FREE * held).max(0.0) / (1.0 + steepness);
+        let [some, all] = BORROWED;
+        let least = ((self.debt / held - some) / (all - some)).clamp(0.0, 1.0);
         for (brake, pressed) in self.brakes.iter_mut().zip(pressed) {
             let depth = pressed.depth();
             if depth > 0.0 {
-                brake.grow(left / (PAYING * depth), pressed);
+                brake.grow(left / (PAYING * depth), least, pressed);
                 self.debt -= brake.paid() * brake.size;
             } else {
                 (brake.size, brake.direction) = (0.0, DVec3::ZERO);

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bodies.soft_block import soft_block
 from palpate_servo.harness import SteppedFingers
 from referees.energy_loops import Span, books, random_loops, random_pairs
 from referees.led_tips import Tip, led, tip_of
@@ -97,6 +98,20 @@ def test_who_is_drawn_along_by_a_deep_finger_pays_too(cube_body, whole):
     assert max(loop.depth for loop in pair) > 0.046
     coupled = Settings(YOUNG_MODULUS, coupling=Coupling(800.0, 4.0, passivity_control=True))
     gives_nothing(books_of(whole, [pair], coupled, motors=3.0), 1)
+
+
+def test_two_who_pinch_a_thin_plate_get_no_more_than_they_put_in():
+    """By its edge, beside each other: what they hold grows from next to nothing, and much of it at
+    once, so that a brake which grows with their ways came too late (5 % of F d / 2).
+    """
+    plate_body = soft_block((0.02, 0.004, 0.06), (4, 1, 12), poisson_ratio=0.3)
+    loops = loops_of(plate_body, 200, Span(None, (0.5, 2.0), (0.5, 3.0)), seed=1)
+    pair = list(random_pairs(loops, seed=1))[130]
+    surface = native_body(plate_body, whole=True)
+    follow = led(surface, Settings(100_000.0), pair, POINTS)
+    found = books(pair, follow)
+    assert found is not None
+    assert found.path <= 0.0
 
 
 def test_the_papers_law_as_published_does(body):
