@@ -280,7 +280,8 @@ bench: $(VENV)/.servo-installed build/packages/.made | build/reports ## how long
 .PHONY: attack
 attack: $(VENV)/.servo-installed build/board ## the tables of docs/safety.md: a hostile device at the servo, and processes that end
 	$(BIN)/palpate devices attack simulated --times 200 --publish docs/safety.md
-	$(BIN)/palpate devices attack simulated --real --board build/board --times 50 --publish docs/safety.md
+	$(BIN)/palpate devices attack simulated --real --board build/board --times 50 --kept build/attacked.json --publish docs/safety.md
+	rm build/attacked.json
 
 build/board: firmware/host/main.cpp $(wildcard firmware/palpate_link/src/*)
 	mkdir -p $(@D)

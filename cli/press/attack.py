@@ -65,6 +65,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="with --real: also beside firmware/host/main.cpp, compiled",
     )
     parser.add_argument(
+        "--kept",
+        type=Path,
+        metavar="FILE",
+        help="with --real: keep rows here as they are found; those that are here already are not "
+        "tried again, so that what was broken off goes on",
+    )
+    parser.add_argument(
         "--publish",
         type=Path,
         metavar="FILE",
@@ -100,6 +107,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Attack, print the tables; 1 if a rule is broken."""
     if arguments.times < 1:
         raise PalpateError("--times must be at least 1")
+    if arguments.kept and not arguments.real:
+        raise PalpateError("--kept goes with --real: in virtual time a table takes minutes")
     tables = []
     for table in _tables(arguments):
         tables.append(table)
@@ -131,6 +140,7 @@ def _tables(arguments: argparse.Namespace) -> Iterator[Table]:
         bodies=tuple(arguments.body),
         only=tuple(arguments.only),
         board=arguments.board,
+        kept=arguments.kept,
     )
     if arguments.real:
         return iter([real_table(attack, _say)])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from itertools import chain
 from pathlib import Path
 
 from ...core.errors import PalpateError
+from .kept import keep_rows, kept_rows
 from .real.firmware import firmware_rows
 from .real.guardians import guardian_rows
 from .real.lost_guardians import lost_guardian_rows
@@ -36,6 +37,8 @@ class Attack:
     only: tuple[str, ...] = ()
     board: Path | None = None
     """The firmware for boards, compiled for this computer."""
+    kept: Path | None = None
+    """Where rows of real processes are kept as they are found, and taken from."""
 
 
 def virtual_tables(attack: Attack, say: Callable[[str], None]) -> Iterator[Table]:
@@ -86,7 +89,9 @@ def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
     Raises
     ------
     PalpateError
-        Windows has neither.
+        Windows has neither; or what was kept is no such file.
+    OSError
+        It cannot be read or written.
     """
     if sys.platform == "win32":
         raise PalpateError(
@@ -94,26 +99,32 @@ def real_table(attack: Attack, say: Callable[[str], None]) -> Table:
             "macOS, or without --real"
         )
 
-    def wanted(injected: str) -> bool:
-        is_wanted = is_chosen(injected, attack.only)
-        if is_wanted:
-            say(f"on a pseudo-terminal: {injected}")
-        return is_wanted
-
     times, board = attack.times, attack.board
+    kept = kept_rows(attack.kept, times) if attack.kept else {}
     rows: list[Row] = []
-    # What was tried for an hour is said before the next is tried.
-    for tried in (
-        partial(process_rows, times, wanted),
-        partial(stalled_reader_rows, wanted),
-        partial(guardian_rows, times, wanted),
-        partial(lost_guardian_rows, times, wanted),
-        *([partial(firmware_rows, board, times, wanted)] if board else []),
+
+    def wanted(injected: str) -> bool:
+        if not is_chosen(injected, attack.only):
+            return False
+        if injected in kept:
+            rows.append(kept[injected])
+            return False
+        say(f"on a pseudo-terminal: {injected}")
+        return True
+
+    # What was tried for an hour is said, and kept, before the next is tried.
+    for row in chain(
+        process_rows(times, wanted),
+        stalled_reader_rows(wanted),
+        guardian_rows(times, wanted),
+        lost_guardian_rows(times, wanted),
+        firmware_rows(board, times, wanted) if board else (),
     ):
-        found = tried()
-        for row in found:
-            say("  ".join(cells(row)).rstrip())
-        rows += found
+        say("  ".join(cells(row)).rstrip())
+        rows.append(row)
+        if attack.kept:
+            kept[row.injected] = row
+            keep_rows(attack.kept, times, kept)
     if not rows:
         raise _nothing_chosen(attack.only)
     return Table("Real processes on a pseudo-terminal", tuple(rows))

@@ -1,11 +1,13 @@
 """``palpate devices attack``: what is printed, what is published, and how it ends."""
 
 import json
+import os
 
 import pytest
 
 from palpate.cli.main import main
 from palpate.core.errors import PalpateError
+from palpate.simulated.attack.kept import keep_rows, kept_rows
 from palpate.simulated.attack.published import REAL, published
 from palpate.simulated.attack.table import Row, Table
 
@@ -45,6 +47,7 @@ def test_every_kind_of_device_has_a_table_of_its_own(capsys):
         (["simulated", "--only", "no such thing"], "no injection has 'no such thing'"),
         (["simulated", "--times", "0"], "--times must be at least 1"),
         (["simulated", "--body", "missing.npz"], "missing.npz"),
+        (["simulated", "--kept", "rows.json"], "--kept goes with --real"),
     ],
 )
 def test_what_cannot_be_attacked_is_refused(capsys, words, said):
@@ -90,3 +93,36 @@ def test_a_broken_rule_ends_the_command_with_1(monkeypatch):
             "palpate.cli.press.attack.virtual_tables", lambda *_, tables=tables: iter(tables)
         )
         assert attack("simulated") == status
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs pseudo-terminals")
+def test_an_attack_that_was_broken_off_goes_on_where_it_was(tmp_path, capsys):
+    """A row that is kept is not tried again, and stands where it would."""
+    before = Row("no reader for 1 s, ring full", 1, "kept", (), zero_ms=float("inf"), note="once")
+    kept = tmp_path / "rows.json"
+    keep_rows(kept, 1, {before.injected: before})
+    words = ["simulated", "--real", "--times", "1", "--kept", str(kept)]
+    assert attack(*words, "--only", "no reader", "the plug") == 0
+    said = capsys.readouterr()
+    assert "kept" in said.out
+    assert "the plug pulled" in said.out
+    assert "on a pseudo-terminal: no reader" not in said.err
+    rows = kept_rows(kept, 1)
+    assert rows[before.injected] == before
+    assert len(rows) == 2
+    assert kept_rows(tmp_path / "none yet", 1) == {}
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"times": 20}', '{"times": 1, "rows": [{"a": 1}]}'])
+def test_other_files_are_no_kept_rows(tmp_path, text):
+    kept = tmp_path / "rows.json"
+    kept.write_text(text)
+    with pytest.raises(PalpateError, match=r"rows\.json"):
+        kept_rows(kept, 1)
+
+
+def test_kept_rows_are_of_as_many_times(tmp_path):
+    kept = tmp_path / "rows.json"
+    keep_rows(kept, 20, {})
+    with pytest.raises(PalpateError, match="go on with --times 20"):
+        kept_rows(kept, 50)

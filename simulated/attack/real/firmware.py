@@ -8,7 +8,7 @@ import json
 import subprocess
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -92,7 +92,7 @@ class FirmwareBoard:
         return line
 
 
-def firmware_rows(program: Path, times: int, wanted: Callable[[str], bool]) -> list[Row]:
+def firmware_rows(program: Path, times: int, wanted: Callable[[str], bool]) -> Iterator[Row]:
     """Rows of hosts that end while they press with `program` (see `FirmwareBoard`)."""
 
     def place() -> AbstractContextManager[Desk]:
@@ -108,8 +108,8 @@ def firmware_rows(program: Path, times: int, wanted: Callable[[str], bool]) -> l
     }
     for baud in SLOW_BAUDS:
         others[f"behind {baud} baud, {NAME}"] = partial(slow_row, board, baud, times)
-    rows = ending_rows(place, NAME, times, wanted)
-    return rows + [row(injected) for injected, row in others.items() if wanted(injected)]
+    yield from ending_rows(place, NAME, times, wanted)
+    yield from (row(injected) for injected, row in others.items() if wanted(injected))
 
 
 def slow_row(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -86,17 +86,15 @@ def guardians(host: int | None = None) -> list[int]:
     return found
 
 
-def guardian_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
+def guardian_rows(times: int, wanted: Callable[[str], bool]) -> Iterator[Row]:
     """A row for each signal and each kind of device, and one for a port that another has taken."""
-    rows = []
     for kind in KINDS:
         place = partial(desk, kind)
-        rows += ending_rows(place, kind, times, wanted)
+        yield from ending_rows(place, kind, times, wanted)
         injected = f"SIGKILL to the host, its port taken by another, {kind}"
         if wanted(injected):
             by = partial(end_by, signal.SIGKILL, taken=True)
-            rows.append(_ended_row(place, injected, times, by))
-    return rows
+            yield _ended_row(place, injected, times, by)
 
 
 def ending_rows(
@@ -104,14 +102,12 @@ def ending_rows(
     name: str,
     times: int,
     wanted: Callable[[str], bool],
-) -> list[Row]:
+) -> Iterator[Row]:
     """A row for each signal to hosts of this device, whose hosts follow each other."""
-    rows = []
     for number in SIGNALS:
         injected = f"{number.name} to the host, {name}"
         if wanted(injected):
-            rows.append(_ended_row(place, injected, times, partial(end_by, number)))
-    return rows
+            yield _ended_row(place, injected, times, partial(end_by, number))
 
 
 def _ended_row(

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
@@ -86,9 +86,10 @@ def leave_alone(host: Host) -> None:
     host.signal(signal.SIGKILL)
 
 
-def lost_guardian_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
+def lost_guardian_rows(times: int, wanted: Callable[[str], bool]) -> Iterator[Row]:
     """A row for each kind of device and signal, and one for a host that ends with its guardian."""
-    rows = [killed_row(times, ALONE, end=leave_alone)] if wanted(ALONE) else []
+    if wanted(ALONE):
+        yield killed_row(times, ALONE, end=leave_alone)
     for kind, by in product(KINDS, SIGNALS):
         injected = f"{by.name} to the guardian, then SIGKILL to the host, {kind}"
         if not wanted(injected):
@@ -101,5 +102,4 @@ def lost_guardian_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
             ways += [loss.ms_to_zero for loss in losses.judged]
         pushed = [loss.pushed for loss in losses.judged]
         worst = max(ways, default=float("inf"))
-        rows.append(ending_row(injected, "unguarded", pushed, worst, losses.note))
-    return rows
+        yield ending_row(injected, "unguarded", pushed, worst, losses.note)

@@ -6,7 +6,7 @@ import itertools
 import signal
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
@@ -236,7 +236,7 @@ def unplugged_row(times: int) -> Row:
     )
 
 
-def process_rows(times: int, wanted: Callable[[str], bool]) -> list[Row]:
+def process_rows(times: int, wanted: Callable[[str], bool]) -> Iterator[Row]:
     """Rows of hosts that are stopped, killed and unplugged; some seconds for each of `times`."""
     rows = {SUSPENDED: suspended_row, KILLED: killed_row, UNPLUGGED: unplugged_row}
-    return [row(times) for injected, row in rows.items() if wanted(injected)]
+    return (row(times) for injected, row in rows.items() if wanted(injected))

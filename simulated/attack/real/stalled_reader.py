@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from ....core.servo.session import Pointer, Servo
 from ....core.servo.settings import Settings
@@ -45,6 +45,7 @@ def stalled_reader_row(seconds: float = STOPPED_SECONDS) -> Row:
     )
 
 
-def stalled_reader_rows(wanted: Callable[[str], bool]) -> list[Row]:
+def stalled_reader_rows(wanted: Callable[[str], bool]) -> Iterator[Row]:
     """That row, if it is wanted."""
-    return [stalled_reader_row()] if wanted(STALLED) else []
+    if wanted(STALLED):
+        yield stalled_reader_row()
