@@ -54,6 +54,8 @@ YOUNG_MODULUS = 10_000.0
 TOOL_SPEED = 0.05
 TOOL_FRICTION = 0.4
 TOOL_RATES = (1000, 2000, 4000)
+# For presses of some tenths of a millimetre, which are short, and steep where one point bears all.
+SHALLOW_RATES = (1000, 4000, 16000)
 
 # Shares of the force. What is continuous leaves this at the finest steps: the bends of its course.
 CONTINUOUS = 0.01
@@ -78,6 +80,8 @@ UNFINISHED = 0.02
 SHARP = 0.10
 POINTED = 0.25
 POINTED_PRESS = 0.05
+# Presses less deep than this share of their depth are shallow.
+SHALLOW = 0.2
 # From how far above tools come, so that a long one begins outside a surface that bends up, metres.
 TOOL_LIFT = 0.015
 
@@ -229,7 +233,8 @@ def tool_rows(name: str, body: SoftBody, native: Body, place: Place, reach: floa
         for share in (0.1, 0.5, 1.0):
             path = from_above(place, press(place, share * deep, 0.05 * reach))
             event = f"made and broken, {share:g} deep"
-            yield Row(tool.name, event, each.pressed, tool_jump(follow, path))
+            rates = SHALLOW_RATES if share < SHALLOW else TOOL_RATES
+            yield Row(tool.name, event, each.pressed, jump_of(follow, path, rates, TOOL_SPEED))
         line = from_above(place, slide(body, place, 0.5 * deep, 1.2 * reach, 12))
         yield Row(tool.name, "patch changes, 0.5 deep", each.drawn, tool_jump(follow, line))
         rubbed = by_tool(native, contact, place, each.front, TOOL_FRICTION)

@@ -28,12 +28,14 @@ def cobs_encode(plain: bytes) -> bytes:
 
 
 def cobs_decode(coded: bytes) -> bytes:
-    """Inverse of `cobs_encode`; raises LinkError when a code points past the end or is zero."""
+    """Inverse of `cobs_encode`; raises LinkError when a code points past the end, and for zeros."""
+    if 0 in coded:
+        raise LinkError(f"a zero at byte {coded.index(0)} of {len(coded)}: COBS has none")
     runs: list[bytes] = []
     start = 0
     while start < len(coded):
         end = start + coded[start]
-        if end == start or end > len(coded):
+        if end > len(coded):
             raise LinkError(f"COBS code {coded[start]} at byte {start} of {len(coded)}")
         runs.append(coded[start + 1 : end])
         start = end

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from link_vectors import VECTORS, bits, messages, rotations
 
@@ -64,6 +64,7 @@ def test_cobs_has_no_zero_costs_one_byte_and_comes_back(plain):
     assert link.cobs_decode(coded) == plain
 
 
+@example(b"\x03\x00\x00")
 @given(st.binary(max_size=80))
 def test_cobs_decodes_only_what_it_would_have_encoded(coded):
     try:
