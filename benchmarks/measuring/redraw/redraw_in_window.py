@@ -46,9 +46,10 @@ def _ball(stage: Stage, count: int) -> Wait:
     """A soft ball of about so many vertices."""
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
-    rings = round((count / 2) ** 0.5)
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=2 * rings, ring_count=rings, radius=0.1)
-    thing = bpy.context.object
+    thing = bpy.data.objects.new("Ball", _round_mesh(round((count / 2) ** 0.5), 0.1))
+    bpy.context.collection.objects.link(thing)
+    bpy.context.view_layer.objects.active = thing
+    thing.select_set(True)
     thing.palpate.edge_length, thing.palpate.decimate_above = 0.08, 1000
     # No finer vertices than the shape key has.
     thing.palpate.bake_from = "BASE"
@@ -56,6 +57,29 @@ def _ball(stage: Stage, count: int) -> Wait:
     with stage.view():
         bpy.ops.view3d.view_selected()
     yield
+
+
+def _round_mesh(rings: int, radius: float) -> bpy.types.Mesh:
+    """A sphere of quads, 2 `rings` around, triangles at its poles.
+
+    Blender's own operator also lays out a UV map, which took longer than all that is measured.
+    """
+    around = 2 * rings
+    polar = np.linspace(0.0, np.pi, rings + 1)[1:-1, None]
+    turn = np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)[None]
+    height = np.cos(polar) + 0.0 * turn
+    rows = np.stack([np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), height], axis=2)
+    poles = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
+    number = np.arange(rows[..., 0].size).reshape(rings - 1, around)
+    beside = np.roll(number, -1, axis=1)
+    quads = np.stack([number[:-1], number[1:], beside[1:], beside[:-1]], axis=2)
+    top, bottom = number.size, number.size + 1
+    caps = [(top, *pair) for pair in zip(number[0].tolist(), beside[0].tolist(), strict=True)]
+    caps += [(bottom, *pair) for pair in zip(beside[-1].tolist(), number[-1].tolist(), strict=True)]
+    mesh = bpy.data.meshes.new("Ball")
+    vertices = radius * np.concatenate([rows.reshape(-1, 3), poles])
+    mesh.from_pydata(vertices.tolist(), [], quads.reshape(-1, 4).tolist() + caps)
+    return mesh
 
 
 def _layer(thing: bpy.types.Object) -> Step:

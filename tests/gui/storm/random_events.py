@@ -27,6 +27,8 @@ MODES = ("EDIT", "SCULPT", "OBJECT")
 STROKES = ("PUSH", "GRAB", "TWIST", "PINCH")
 # Most of what comes are moves of the pointer, near the object.
 SPREAD_PIXELS, ASIDE = 90.0, 0.2
+# At the edges of the view Blender takes drags to join and split its areas.
+EDGE_PIXELS = 30
 # A mouse tells of up to a thousand moves a second, and a screen shows sixty frames.
 MOST_IN_A_GUST = 64
 EVENTS_A_LINE = 500
@@ -152,12 +154,16 @@ class Storm:
         """A place in the view, mostly near the object."""
         region = self.stage.region("WINDOW")
         if self.rng.random() < ASIDE:
-            x, y = self.rng.uniform(0.02, 0.98, size=2)
-            return (region.x + x * region.width, region.y + y * region.height)
-        x, y = np.array(self.seen()) + self.rng.normal(scale=SPREAD_PIXELS, size=2)
-        left, low = region.x + 1, region.y + 1
-        right, high = region.x + region.width - 2, region.y + region.height - 2
-        return (float(np.clip(x, left, right)), float(np.clip(y, low, high)))
+            x, y = self.rng.uniform(size=2) * (region.width, region.height)
+            x, y = x + region.x, y + region.y
+        else:
+            x, y = np.array(self.seen()) + self.rng.normal(scale=SPREAD_PIXELS, size=2)
+        left, low = region.x + EDGE_PIXELS, region.y + EDGE_PIXELS
+        right, high = region.x + region.width, region.y + region.height
+        return (
+            float(np.clip(x, left, right - EDGE_PIXELS)),
+            float(np.clip(y, low, high - EDGE_PIXELS)),
+        )
 
     def type(self, kind: str, **held: bool) -> None:
         self.send(kind, "PRESS", **held)
