@@ -72,7 +72,10 @@ def _draw_map(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row.operator("palpate.remove_softness_map", icon="X", text="")
     if ATTRIBUTE not in thing.data.color_attributes or softness.map_low <= 0.0:
         return
-    say(layout, context, "Viewport Shading, Color, Attribute shows it", "INFO")
+    shading = context.space_data.shading
+    if (shading.type, shading.color_type) != ("SOLID", "VERTEX"):
+        say(layout, context, "Viewport Shading, Solid, Color, Attribute shows it", "INFO")
+        layout.prop_enum(shading, "color_type", "VERTEX", text="Show It")
     column = layout.column(align=True)
     column.use_property_split = False
     values = [value for value, _ in legend(softness.map_low, softness.map_high, LEGEND_STEPS)]

@@ -66,7 +66,7 @@ class PalpateScene(
         "Record from Start", "Record every tick from the beginning of a press"
     )
     record_minutes: number(
-        "Longest Recording",
+        "Minutes",
         "How long a recording may become, in minutes; then it stops by itself",
         10.0,
         span(0.1, 60.0, precision=1, step=100),

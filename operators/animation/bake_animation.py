@@ -20,6 +20,7 @@ from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
+from ..reporting.wait_cursor import wait_cursor
 from ..rest.keyed import key_places, refuse_others
 from ..rest.supports import supports_of
 from ..scene.body_frame import BodyFrame
@@ -54,10 +55,16 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     frame_start: bpy.props.IntProperty(
-        name="First Frame", description="Where it begins; -1 is the scene's first", default=-1
+        name="First Frame",
+        description="Where it begins; -1 is the scene's first",
+        default=-1,
+        options={"SKIP_SAVE"},
     )
     frame_end: bpy.props.IntProperty(
-        name="Last Frame", description="Where it ends; -1 is the scene's last", default=-1
+        name="Last Frame",
+        description="Where it ends; -1 is the scene's last",
+        default=-1,
+        options={"SKIP_SAVE"},
     )
     step: bpy.props.IntProperty(
         name="Step",
@@ -98,7 +105,8 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
     def _start(self, context: bpy.types.Context) -> set[str]:
         self._baking = self._bake(context)
         # What cannot be baked is refused before the operator becomes modal.
-        share = next(self._baking, 1.0)
+        with wait_cursor(context):
+            share = next(self._baking, 1.0)
         self._progress = ModalProgress()
         self._progress.begin(self, context, SLICE_SECONDS)
         self._show(context, share)
@@ -232,8 +240,12 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         self._told = Sentence("Kept as layer '{layer}'", layer=name)
 
     def _frames(self, scene: bpy.types.Scene) -> list[int]:
-        first = scene.frame_start if self.frame_start < 0 else self.frame_start
-        last = scene.frame_end if self.frame_end < 0 else self.frame_end
+        # The redo panel shows which they were.
+        if self.frame_start < 0:
+            self.frame_start = scene.frame_start
+        if self.frame_end < 0:
+            self.frame_end = scene.frame_end
+        first, last = self.frame_start, self.frame_end
         if self.current_only:
             return list(range(min(first, scene.frame_current), scene.frame_current + 1))
         frames = list(range(first, last + 1, self.step))

@@ -1,11 +1,13 @@
-"""Remove Dent: a kept press goes, and all that it left in the mesh; or Pressers press no more."""
+"""Remove Dent: a kept press or a rig goes, and all that it left in the mesh; or Pressers press
+no more.
+"""
 
 from __future__ import annotations
 
 import bpy
 
 from ...core.errors import PalpateError
-from ..layer import layers
+from ..layer import layers, press_rig
 from .layer_operator import OnLayers
 
 
@@ -13,18 +15,18 @@ class PALPATE_OT_remove_layer(OnLayers, bpy.types.Operator):
     bl_idname = "palpate.remove_layer"
     bl_label = "Remove Dent"
     bl_description = (
-        "Take a kept press back, with its keyframes and its attributes of the mesh; or have the "
-        "Pressers press no more"
+        "Take a kept press or a press rig back, with its keyframes and its attributes of the mesh; "
+        "or have the Pressers press no more"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     layer: bpy.props.StringProperty(
-        name="Layer", description="Name of its modifier", options={"SKIP_SAVE"}
+        name="Layer", description="Name of its modifier", options={"SKIP_SAVE", "HIDDEN"}
     )
 
     @classmethod
     def layers_for(cls, thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
-        return layers.layers_of(thing)
+        return [*layers.layers_of(thing), *press_rig.rigs_of(thing)]
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

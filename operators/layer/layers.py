@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scene import curves
-from . import modifier_inputs, remains, stack
+from . import layer_groups, modifier_inputs, remains, stack
 from .layer_groups import CARRIER, DISPLACEMENT, LEVEL, STRENGTH, TRACTION, Kind, group_of, kind_of
 
 KEPT_NAME = "Press"
@@ -170,11 +170,12 @@ def rename(thing: bpy.types.Object, layer: bpy.types.NodesModifier, name: str) -
 
 
 def remove(thing: bpy.types.Object, layer: bpy.types.NodesModifier) -> None:
-    """Remove a layer, its animation, and its attributes where no other layer shows them."""
+    """Remove a layer or a rig, its animation, and its attributes where nothing else shows them."""
     mesh = mesh_of(thing, layer)
     remains.note(mesh, attribute_name(layer))
-    # A layer that takes its name later would move by them.
-    curves.remove(thing, strength_path(layer))
+    # What takes its name later would move by them.
+    for slider in layer_groups.AXES if kind(layer) is Kind.RIG else (STRENGTH,):
+        curves.remove(thing, modifier_inputs.path(layer, slider))
     remove_modifier(thing, layer)
     remains.sweep(mesh)
     mesh.update_tag()

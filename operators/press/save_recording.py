@@ -17,7 +17,7 @@ FORMAT_ITEMS = [
     (".npz", "npz", "Arrays for numpy; smaller, and written at once"),
 ]
 DEFAULT_NAME = "recording"
-NOTHING = "Nothing is recorded yet; press Record while you press"
+NOTHING = "Nothing is recorded yet; tick Record from Start under Device > Recording, and press"
 
 
 def _recorder() -> Recorder | None:

@@ -61,7 +61,7 @@ class Recorder:
             self.servo.start_recording(longest)
         except (ValueError, RuntimeError, MemoryError) as problem:
             raise PalpateError(
-                "recording: {problem}; set a shorter Longest Recording, or stop the one going on",
+                "recording: {problem}; set fewer Minutes, or stop the one going on",
                 problem=problem,
             ) from problem
         self.wanted, self.full, self.seconds, self.lost = True, False, 0.0, 0

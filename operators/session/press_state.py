@@ -147,7 +147,7 @@ def _save(state: PressState, event: Moment) -> Step:
 
 def _keep(state: PressState, *, dented: bool) -> Step:
     if state.withdrawn or not (state.pressed and dented):
-        text = "There is no shape to keep: nothing is pressed, or not beyond the yield depth"
+        text = "There is no shape to keep: nothing is pressed, or all of it springs back"
         return replace(state, message=text), (Say(text),)
     return replace(state, phase=Phase.ENDED, message=""), (Act.STOP_SERVO, Act.KEEP_SHAPE)
 

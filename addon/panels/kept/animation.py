@@ -2,7 +2,8 @@
 
 import bpy
 
-from ....operators.animation import failures
+from ....operators.animation import failures, frame_keys
+from ....operators.played import mesh_cache
 from ..base import PalpatePanel, named_properties, while_idle
 from ..sentence import say
 
@@ -20,12 +21,17 @@ class PALPATE_PT_animation(PalpatePanel, bpy.types.Panel):
         problem = failures.reason(thing)
         if problem:
             say(layout, context, problem, "ERROR")
-        if thing.palpate.pressers is not None:
+        # Renders show what is baked without it.
+        if thing.palpate.pressers is not None and not _is_baked(thing):
             column.prop(context.scene.render, "use_lock_interface")
             text = "Lock Interface lets renders show them; a farm needs Bake Animation"
             say(column, context, text, "INFO")
         column.operator("palpate.press_frames", icon="RENDER_ANIMATION")
         column.operator("palpate.animate_recording", icon="ANIM")
+
+
+def _is_baked(thing: bpy.types.Object) -> bool:
+    return mesh_cache.plays(thing) or frame_keys.plays(thing)
 
 
 classes = (PALPATE_PT_animation,)

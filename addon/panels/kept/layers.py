@@ -33,7 +33,10 @@ class PALPATE_PT_layers(PalpatePanel, bpy.types.Panel):
             row.operator("palpate.remove_layer", text="", icon="X").layer = layer.name
         for rig in press_rig.rigs_of(thing):
             column = self.layout.column(align=True)
-            column.label(text=rig.name, icon="EMPTY_AXIS", translate=False)
+            row = column.row(align=True)
+            row.label(text=rig.name, icon="EMPTY_AXIS", translate=False)
+            row = while_idle(row)
+            row.operator("palpate.remove_layer", text="", icon="X").layer = rig.name
             for axis in AXES:
                 modifier_inputs.draw_slider(column, rig, axis, axis)
         column = while_idle(self.layout).column(align=True)

@@ -53,6 +53,19 @@ def test_a_slider_moves_the_place_by_the_radius_and_is_what_the_body_answers(thi
     np.testing.assert_allclose(made[2].ravel(), expected, rtol=0, atol=1e-5)
 
 
+def test_a_rig_is_taken_back_with_its_animation_and_attributes(thing):
+    before = mesh_state(thing)
+    assert bpy.ops.palpate.add_press_rig(use_cursor=False, at=AT, radius=0.1) == {"FINISHED"}
+    (rig,) = part("operators.layer.press_rig").rigs_of(thing)
+    inputs, curves = part("operators.layer.modifier_inputs"), part("operators.scene.curves")
+    paths = [inputs.path(rig, axis) for axis in "XY"]
+    for path in paths:
+        thing.keyframe_insert(path)
+    assert bpy.ops.palpate.remove_layer(layer=rig.name) == {"FINISHED"}
+    assert mesh_state(thing) == before
+    assert not any(curves.is_animated(thing, path) for path in paths)
+
+
 def test_a_rig_after_one_that_was_deleted_by_hand_has_its_own_answers(thing):
     first, second = (np.random.default_rng(seed).random((3, 8, 3), np.float32) for seed in (1, 2))
     rigs = part("operators.layer.press_rig")
