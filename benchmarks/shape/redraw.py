@@ -5,10 +5,11 @@
 A ball of 3,000, 126,000 and 504,000 vertices (``--quick``: without the last) in the windowed
 Blender, all in one run: a live layer whose vertices all move, a shape key that is written anew, and
 a step of a sculpting stroke. Milliseconds of the processor, of all threads, medians: what hands the
-step over, Blender's evaluation, and its drawing (in software here, and so most of it).
+step over, Blender's evaluation, and its drawing (in software here, and so most of it). The layer's
+own share has the shape in it, from the body's nodes to the vertices; the key's places are known.
 
-Claims: the layer's own share within 10 ms for all, and a step of it, without drawing, at most
-`MOST_OF_KEY` times one of the shape key.
+Claims: the layer's own share within 10 ms for all, and evaluating it at most `MOST_OF_KEY` times
+the shape key.
 """
 
 from __future__ import annotations
@@ -62,10 +63,8 @@ def _table(figures: dict[str, dict[str, float]]) -> bool:
     for name in ("layer", "shape key", "elastic grab"):
         one = figures[name]
         print(f"  {name:<18}{one['own']:9.1f}{one['evaluation']:12.1f}{one['drawing']:9.1f}")
-    layer, key = (
-        one["own"] + one["evaluation"] for one in (figures["layer"], figures["shape key"])
-    )
-    return figures["layer"]["own"] <= MOST_OWN and layer <= MOST_OF_KEY * key
+    layer, key = figures["layer"], figures["shape key"]
+    return layer["own"] <= MOST_OWN and layer["evaluation"] <= MOST_OF_KEY * key["evaluation"]
 
 
 if __name__ == "__main__":
