@@ -365,6 +365,11 @@ class Snapshot(FingerSnapshot):
         of the world.
         """
 
+    def seen_from_body(self) -> Snapshot:
+        """The same with places and directions in the body's own axes, wherever it is: forces on
+        fingers too.
+        """
+
     @property
     def remembered_nodes(self) -> NDArray[np.int64]:
         """Nodes (k,) of the surface that remember a force, where the body gives way with time."""
@@ -374,6 +379,16 @@ class Snapshot(FingerSnapshot):
         """Forces (k, 3), N, that would hold the body as it is, were it elastic with its modulus in
         the end: those of this tick are among them.
         """
+
+    @property
+    def borne_nodes(self) -> NDArray[np.int64]:
+        """Nodes (k,) of the surface on which supports of a body press that nobody holds, one as
+        often as supports press on it.
+        """
+
+    @property
+    def borne_forces(self) -> NDArray[np.float64]:
+        """Forces (k, 3) of the supports on these, N, in the body's own axes."""
 
     @property
     def fingers(self) -> list[FingerSnapshot]:

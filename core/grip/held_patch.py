@@ -10,6 +10,10 @@ at the rim, where that of a rigid patch would be infinite and draw an edge into 
 all forces with these springs they are those of least energy. D_i = R (1 / w_i - 1) / (a_i E) for a
 firmness w_i, a share a_i of the surface and the radius R: the same hand on any mesh.
 
+A body that nobody holds gives way to all that does not balance. Of it the forces do, R^T F = 0 with
+its rigid motions R, and the hand goes along with what they leave free, ``(L_SS + D) F = g - R q``: it
+draws a patch together or apart, and what moves or turns it as a whole takes no force.
+
 As L is linear, each of the five fields of :mod:`.motions` is answered once; a frame is a sum.
 """
 
@@ -160,7 +164,14 @@ class _Hold:
         every = np.repeat(np.bincount(cell, spread**2 * springs, count), 3)
         asked = np.zeros((count, 3, self.asked.shape[2]))
         np.add.at(asked, cell, spread[:, None, None] * self.asked)
-        solved = _solved(compliance + np.diag(every), asked.reshape(3 * count, -1))
+        right = asked.reshape(3 * count, -1)
+        matrix = compliance + np.diag(every)
+        if body.is_free:
+            middles = np.zeros((count, 3))
+            np.add.at(middles, cell, spread[:, None] * self.places)
+            solved = _balanced(matrix, right, middles)
+        else:
+            solved = _solved(matrix, right)
         return spread[:, None, None] * solved.reshape(asked.shape)[cell]
 
 
@@ -190,6 +201,19 @@ def _read(cell: NDArray[np.int64], spread: Array, count: int) -> tuple[NDArray[n
     weight = np.zeros(len(cell))
     weight[read] = spread[read]
     return read, weight / np.bincount(cell, weight, count)[cell]
+
+
+def _balanced(matrix: Array, right: Array, places: Array) -> Array:
+    """Least forces at ``places`` (c, 3) that neither move nor turn what they act on."""
+    arms = places - places.mean(axis=0)
+    motions = np.zeros((len(places), 3, 6))
+    motions[:, :, :3] = np.eye(3)
+    motions[:, :, 3:] = np.cross(np.eye(3)[None, :, :], arms[:, None, :]).transpose(0, 2, 1)
+    rigid = motions.reshape(-1, 6)
+    by_motion, forces = np.split(_solved(matrix, np.hstack([rigid, right])), [6], axis=1)
+    # On a line no forces turn it, and any turn about that will do.
+    left: Array = forces - by_motion @ np.linalg.pinv(rigid.T @ by_motion) @ (rigid.T @ forces)
+    return left
 
 
 def _solved(matrix: Array, right: Array) -> Array:

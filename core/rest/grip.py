@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from palpate_servo import closest_points
+from palpate_servo import MAX_FINGERS, closest_points
 
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
@@ -17,6 +17,10 @@ from .support import friction_checked
 if TYPE_CHECKING:
     # Types only, absent at run time.
     from palpate_servo import LaidPoint
+
+
+# As many hold and press a body at most.
+MOST_GRIPS: int = MAX_FINGERS
 
 
 @dataclass(frozen=True, eq=False)

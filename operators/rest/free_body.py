@@ -15,6 +15,7 @@ from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
+from ...core.rest.grip import Grip
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
@@ -27,6 +28,9 @@ from .placement import frame_at, placement_of
 from .supports import Supports, supports_of
 
 Array = NDArray[np.float64]
+
+# Share of its size over what bears it at which a body that falls is looked at again.
+LANDING = 0.05
 
 # The body opened last, at another density than its file tells, and as it was.
 _weighed: tuple[SoftBody, SoftBody] | None = None
@@ -51,6 +55,11 @@ class Lying:
     moved: NDArray[np.float32]
     rest: Rest
 
+    def in_world(self, pose: Pose) -> Pose:
+        """Pose in the world of one in the body's own axes."""
+        placement = self.rest.placement
+        return Pose(placement.to_world(pose.position), placement.rotation @ pose.rotation)
+
 
 @dataclass(frozen=True, eq=False)
 class FreeBody:
@@ -60,12 +69,33 @@ class FreeBody:
     ----------
     drawn : the body, and its object as it was at first.
     supports : what it rests on.
+    settings : of its motion.
     resting : its equilibrium.
     """
 
     drawn: DrawnBody
     supports: Supports
+    settings: RestSettings
     resting: Resting
+
+    def touched_by(self, tools: Sequence[tuple[Tool | Grip, Pose]], placement: Pose) -> FreeBody:
+        """The same body at a placement, pressed by tools or held by grips, with their poses in the
+        world.
+
+        Raises
+        ------
+        PalpateError
+            Too many of them.
+        """
+        resting = Resting(
+            self.resting.body,
+            self.supports.all,
+            tools,
+            placement=placement,
+            settings=self.settings,
+        )
+        resting.come_in()
+        return replace(self, resting=resting)
 
     def settle(self) -> Lying:
         """Where it comes to rest.
@@ -78,10 +108,30 @@ class FreeBody:
         self.resting.settle()
         return self.now()
 
-    def now(self) -> Lying:
-        """Where it is now."""
+    def come_down(self) -> Lying:
+        """Where it comes to rest with nothing to hold it, also from high above.
+
+        Raises
+        ------
+        PalpateError
+            It does not.
+        """
+        placement = self.resting.rest.placement
+        x, y, z = self.settings.gravity
+        nodes = placement.to_world(self.drawn.surface_nodes)
+        gap = self.supports.gap_beneath(nodes) if x == y == 0.0 and z < 0.0 else 0.0
+        if self.drawn.size < gap < np.inf:
+            # Nothing happens on the way, and it would take as long as the way is.
+            down = np.array([0.0, 0.0, LANDING * self.drawn.size - gap])
+            self.resting.place(replace(placement, position=placement.position + down))
+        return self.settle()
+
+    def now(self, bent: Array | None = None) -> Lying:
+        """Where it is now; ``bent`` (n, 3) displaces its free surface nodes besides, metres."""
         rest, touches = self.resting.rest, self.resting.tool_touches()
         displacements = rest.displacements(self.resting.young_modulus)
+        if bent is not None:
+            displacements = displacements + bent
         drawn = self.drawn
         pressing = [PressingTool(one.tool, one.pose, one.force) for one in touches]
         moved = drawn.drawn_displacement(displacements, pressing)
@@ -95,7 +145,7 @@ def lie(
     thing: bpy.types.Object,
     drawn: DrawnBody,
     supports: Supports,
-    tools: Sequence[tuple[Tool, Pose]] = (),
+    tools: Sequence[tuple[Tool | Grip, Pose]] = (),
     placement: Pose | None = None,
 ) -> FreeBody:
     """A free body where its object is, or at a ``placement``; poses of tools are in the world.
@@ -118,7 +168,7 @@ def lie(
         settings=settings,
     )
     resting.come_in()
-    return FreeBody(drawn, supports, resting)
+    return FreeBody(drawn, supports, settings, resting)
 
 
 def supports_under(

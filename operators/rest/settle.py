@@ -62,7 +62,7 @@ def settle(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> Lying:
     refuse_played(thing)
     drawn = open_body(thing, graph.scene)
     supports = supports_under(thing, drawn, graph)
-    lying = lie(thing, drawn, supports).settle()
+    lying = lie(thing, drawn, supports).come_down()
     show(thing, lying, supports.floor)
     return lying
 

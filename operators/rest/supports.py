@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
@@ -33,6 +34,20 @@ class Supports:
     def ways(self) -> list[tuple[Tool | None, Pose]]:
         """Tool and pose of each; a floor has no tool."""
         return [(getattr(one, "tool", None), one.pose) for one in self.all]
+
+    def gap_beneath(self, places: NDArray[np.float64]) -> float:
+        """How far places (n, 3) in the world can go straight down at least before one meets a
+        support, metres; infinite where none is under them.
+        """
+        low, high = places.min(axis=0), places.max(axis=0)
+        gap = np.inf if self.floor is None else low[2] - self.floor
+        for tool, pose in self.ways:
+            if tool is not None:
+                core = pose.to_world(tool.core)
+                least, most = core.min(axis=0) - tool.radius, core.max(axis=0) + tool.radius
+                if (least[:2] < high[:2]).all() and (low[:2] < most[:2]).all():
+                    gap = min(gap, low[2] - most[2] if high[2] > least[2] else np.inf)
+        return max(float(gap), 0.0)
 
 
 def supports_of(thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph) -> Supports:

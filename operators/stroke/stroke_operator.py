@@ -83,6 +83,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         self._hang(thing)
         try:
             asked, stroked = self._stroke.stroked(wanted)
+            if stroked.springs_back:
+                asked, stroked = self._stroke.ended(asked, stroked)
             draw(thing, self._stroke.drawn, stroked)
             self._keep(scene, thing, asked, stroked)
             if asked is not wanted:
@@ -147,7 +149,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         self._typed = TypedAmount(self._drag.motion)
         self._hang(thing)
         self._stay = ModalStay()
-        self._stay.begin(self, context)
+        self._stay.begin(self, context, self._stroke.pace)
         self._stay.say(context, stroke_words.status(self._drag.motion))
         return {"RUNNING_MODAL"}
 
@@ -202,16 +204,18 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         if typed is not None:
             self._typed = typed
         if typed is not None or event.type in {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}:
-            self._follow(context, event)
+            pressure = event.pressure if event.is_tablet else 0.0
+            cursor = event.mouse_x, event.mouse_y
+            drag = self._drag.dragged(cursor, pressure, sliding=event.ctrl)
+            self._drag = replace(drag, typed=self._typed.value(context.scene))
+            self._follow(context)
+        elif event.type == "TIMER" and self._stroke.pace:
+            self._follow(context)
         return {"RUNNING_MODAL"}
 
-    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+    def _follow(self, context: bpy.types.Context) -> None:
         """Draw the stroke as the pointer or the keyboard has it now."""
         scene, thing = context.scene, self._thing()
-        pressure = event.pressure if event.is_tablet else 0.0
-        cursor = event.mouse_x, event.mouse_y
-        drag = self._drag.dragged(cursor, pressure, sliding=event.ctrl)
-        self._drag = replace(drag, typed=self._typed.value(scene))
         wanted = self._drag.asked(self._touched.turn)
         problem = ""
         try:
@@ -248,9 +252,14 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
     def _keep(
         self, scene: bpy.types.Scene, thing: bpy.types.Object, asked: Asked, stroked: Stroked
     ) -> None:
-        name = kept_imprint.keep(thing, scene, self._stroke.drawn.frame)
         self.force = stroked.force
         figures = stroke_words.figures(scene, asked, stroked)
+        if stroked.springs_back and stroked.lying is not None:
+            live_layer.remove(thing)
+            self._stroke.leave(thing, stroked.lying)
+            self.report({"INFO"}, reported("{figures}, let go and at rest", figures=figures))
+            return
+        name = kept_imprint.keep(thing, scene, self._stroke.drawn.frame)
         self.report({"INFO"}, reported("{figures}, kept as '{name}'", figures=figures, name=name))
 
     def _ended(self, thing: bpy.types.Object) -> tuple[Asked, Stroked]:

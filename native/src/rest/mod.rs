@@ -3,6 +3,7 @@
 //! The elastic displacement lives in the body's own frame, in which tools and supports are led; the
 //! frame moves by what the tick's contact problem says.
 
+pub mod borne;
 mod coming_in;
 pub mod finger;
 pub mod frame;

@@ -27,6 +27,7 @@ use crate::creep::shown::Remembered;
 use crate::creep::step::Step;
 use crate::device::Fault;
 use crate::engine::Engine;
+use crate::rest::borne::Borne;
 use crate::rest::frame::Frame;
 use crate::rest::prop::Laid;
 use crate::servo::exchange::bodies::Holder;
@@ -55,6 +56,8 @@ pub struct Servo {
     engine: Engine,
     remembered: Input<Remembered>,
     remembers_nothing: bool,
+    borne: Input<Borne>,
+    nothing_bears: bool,
     toll: Toll<MAX_FINGERS>,
     tick: u64,
     /// Time of the last tick, s.
@@ -123,6 +126,7 @@ impl Servo {
             .sent(&shots.map(|shot| Some(shot.filter(|s| s.state.may_push())?.output_force)));
         self.stages.end_of(Stage::Write, &mut since);
         self.show_memory(moment.tick, relaxed);
+        self.show_borne(moment.tick, moment.frame.is_held(), settings.young_modulus);
         self.publish(&shots, &self.frame(&body), settings.young_modulus);
     }
 
@@ -216,6 +220,17 @@ impl Servo {
             self.remembered.publish();
         }
         self.remembers_nothing = memory.is_empty();
+    }
+
+    /// Publishes what bears the body, where that is or was anything.
+    fn show_borne(&mut self, tick: u64, is_held: bool, young_modulus: f64) {
+        let prop = self.prop.held.as_ref().filter(|_| !is_held);
+        let supports = prop.map_or(&[][..], |prop| &prop.supports);
+        if !(supports.is_empty() && self.nothing_bears) {
+            (self.borne.input_buffer_mut()).show(tick, supports, young_modulus);
+            self.borne.publish();
+        }
+        self.nothing_bears = supports.is_empty();
     }
 
     /// Leaves all devices limp and says so.

@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use crate::rest::frame::Frame;
+use crate::rest::placement::Placement;
 use crate::tool::collider::Collider;
 use crate::tool::slot::{MOST_NEAR, MOST_NODES};
 
@@ -50,6 +51,14 @@ impl PressedPatch {
     /// Nodes of the surface that carry force, and their forces, N, in the body's axes.
     pub fn nodes(&self) -> &[(u32, DVec3)] {
         &self.nodes[..self.node_count]
+    }
+
+    /// Becomes the same in the axes of a body that is placed there.
+    pub fn see_from(&mut self, placement: &Placement) {
+        for point in &mut self.points[..self.point_count] {
+            point.position = placement.place_to_body(point.position);
+            point.force = placement.direction_to_body(point.force);
+        }
     }
 
     /// Becomes what a tool presses in a tick, or nothing, on a body whose frame is there now.

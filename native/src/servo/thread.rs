@@ -13,6 +13,7 @@ use crate::clock::suspension::Suspension;
 use crate::clock::timing::Waking;
 use crate::creep::shown::Remembered;
 use crate::device::{Device, Fault};
+use crate::rest::borne::Borne;
 use crate::rest::prop::Laid;
 use crate::servo::Servo;
 use crate::servo::exchange::bodies::Hand;
@@ -39,6 +40,7 @@ pub struct Running {
     tips: Mutex<Vec<Giver<Tip>>>,
     patches: Mutex<Vec<Output<PressedPatch>>>,
     remembered: Mutex<Output<Remembered>>,
+    borne: Mutex<Output<Borne>>,
     settings: Mutex<Input<Settings>>,
     snapshots: Mutex<Output<Published>>,
     samples: Mutex<Consumer<Sample>>,
@@ -114,6 +116,7 @@ impl Running {
             tips: Mutex::new(ends.tips),
             patches: Mutex::new(ends.patches),
             remembered: Mutex::new(ends.remembered),
+            borne: Mutex::new(ends.borne),
             settings: Mutex::new(ends.settings),
             snapshots: Mutex::new(ends.snapshots),
             samples: Mutex::new(ends.samples),
@@ -183,6 +186,11 @@ impl Running {
     /// What the body remembers of past forces; see [`Remembered::nodes`].
     pub fn remembered(&self) -> Vec<(u32, DVec3)> {
         locked(&self.remembered).read().nodes().to_vec()
+    }
+
+    /// What bears a body that nobody holds; see [`Borne::nodes`].
+    pub fn borne(&self) -> Vec<(u32, DVec3)> {
+        locked(&self.borne).read().nodes().to_vec()
     }
 
     /// The newest tick with the patches of its tools, as far as these are of the same tick.

@@ -1,150 +1,194 @@
-"""Push on an object that nobody holds: it gives way, slides, rolls, and comes to rest again."""
+"""Strokes on an object that nobody holds: it gives way, is carried about, and comes to rest again."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.contact.place import nearest_place
-from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
+from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ...object.drawn_body import DrawnBody
 from ...rest.before import Before
 from ...rest.free_body import FreeBody, Lying, lie, supports_under
-from ...rest.placement import placement_of
 from ...rest.settle import refuse_played, show
-from .fingertips import Fingertips
+from .free_hold import FreeHold
+from .free_push import FreePush
 from .motion import Asked, Motion
-from .pushing import DEEPEST
-from .stroke import MOST_SQUEEZED, Stroke
+from .stroke import Stroke
 from .stroked import Stroked
-from .thickness import Thickness
 
 Array = NDArray[np.float64]
 
-# While the pointer moves a body goes on by so many ticks, of so many seconds.
-TICKS, TICK = 40, 2e-3
+# From picture to picture a body goes on by so many ticks, of so many seconds.
+TICKS, TICK = 20, 4e-3
+# Seconds between pictures.
+PACE = 1.0 / 30.0
 
 
 @dataclass(frozen=True, eq=False)
 class FreeStroke:
     """Stroke on an object that nobody holds; made by :meth:`begin`, which moves nothing.
 
+    A push is that of fingertips, and a pinch draws the surface together: both stay as a layer.
+    Grab, Twist and pull take hold of the object and carry it; let go, it springs back and comes
+    down to rest.
+
     Attributes
     ----------
     drawn : the body where it came to rest before.
     grips : the place, then its mirror images.
+    young_modulus : of the object.
     rested : the body there.
     """
 
     drawn: DrawnBody
     grips: tuple[Grip, ...]
+    young_modulus: float
     rested: Lying
     _before: Before
-    _free: FreeBody
-    _tips: Fingertips
+    _alone: FreeBody
+    pace = PACE
 
     @classmethod
     def begin(
         cls, thing: bpy.types.Object, drawn: DrawnBody, grips: tuple[Grip, ...]
     ) -> FreeStroke:
-        """Let the body come to rest, then set fingertips down on it.
+        """Let the body come to rest.
 
         Raises
         ------
         PalpateError
-            It does not come to rest, or cannot move by itself; fingertips that do not fit.
+            It does not, or cannot move by itself.
         """
         refuse_played(thing)
         graph = bpy.context.evaluated_depsgraph_get()
-        supports = supports_under(thing, drawn, graph)
-        rested = lie(thing, drawn, supports).settle()
+        alone = lie(thing, drawn, supports_under(thing, drawn, graph))
+        rested = alone.come_down()
         drawn = replace(drawn, frame=rested.frame)
-        tips = Fingertips.over(drawn, grips)
-        if not tips.reach:
-            raise PalpateError("The fingertip does not fit here; a smaller one does")
-        off = 2.0 * float(np.linalg.norm(rested.displacements, axis=1).max()) + AIR * drawn.size
-        starts = [_in_world(rested, tips.pose(grip, -off)) for grip in grips]
-        tools = [(tips.tool, start) for start in starts]
-        free = lie(thing, drawn, supports, tools, rested.rest.placement)
-        free.resting.settle()
-        return cls(drawn, grips, rested, Before.of(thing), free, tips)
+        young_modulus = thing.palpate.young_modulus
+        return cls(drawn, grips, young_modulus, rested, Before.of(thing), alone)
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Move the object to where it came to rest."""
-        show(thing, self.rested, self._free.supports.floor)
+        self.leave(thing, self.rested)
+
+    def leave(self, thing: bpy.types.Object, lying: Lying) -> None:
+        """Have the object lie there."""
+        show(thing, lying, self._alone.supports.floor)
 
     def give_back(self, thing: bpy.types.Object) -> None:
         """Have the object as it was before."""
         self._before.give_back(thing)
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
-        """Where the body comes to rest under fingertips that go where they are asked to; and what
-        was done of it, where it asked to go deeper than the body is thick.
+        """Where the body comes to rest under hands that go where they are asked to; and what was
+        done of it, where it asked to go deeper than the body is thick.
 
         Raises
         ------
         PalpateError
-            The motion is no push inward, or the body does not come to rest.
+            They do not fit, or the body does not come to rest.
         """
-        done = self._led(asked)
+        hand = self._hand(asked)
+        if hand is None:
+            return asked, self._pinched(asked)
         try:
-            lying = self._free.settle()
+            for part in range(1, (parts := hand.parts(asked)) + 1):
+                done = self._led(hand, asked.part(part / parts) if part < parts else asked)
+                lying = hand.free.settle()
         except PalpateError as problem:
-            raise PalpateError(DEEPEST) from problem
-        return done, _stroked(lying)
+            raise PalpateError(hand.refused) from problem
+        return done, _stroked(hand, lying)
 
     def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
         """The same on the way there, as far as the body goes while a picture is drawn."""
-        done = self._led(asked)
+        hand = self._hand(asked)
+        if hand is None:
+            return asked, self._pinched(asked)
+        done = self._led(hand, asked)
         for _ in range(TICKS):
-            self._free.resting.tick(TICK, hurried=True)
-        return done, _stroked(self._free.now())
+            hand.free.resting.tick(TICK, hurried=True)
+        return done, _stroked(hand, hand.free.now())
 
     def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
-        """What came of the stroke once all is at rest; as far as it went, where it never is."""
+        """What came of the stroke once all is at rest; of a push as far as it went, where it never
+        is. What was held comes down.
+
+        Raises
+        ------
+        PalpateError
+            Nothing bears it where it was let go.
+        """
+        if stroked.springs_back and stroked.lying is not None:
+            let_go = self._alone.touched_by((), stroked.lying.rest.placement)
+            try:
+                return asked, replace(stroked, lying=let_go.come_down(), touches=())
+            except PalpateError as problem:
+                raise PalpateError(
+                    "The object does not come to rest where it was let go, and was given back: let "
+                    "go above its floor or a collider"
+                ) from problem
         try:
             return self.stroked(asked)
         except PalpateError:
             return asked, stroked
 
-    def _led(self, asked: Asked) -> Asked:
-        """Lead the fingertips; what is asked of them at most."""
-        if asked.motion is not Motion.PUSH or math.copysign(1.0, asked.amount) < 0.0:
-            raise PalpateError(
-                "What nothing pins can only be pushed inward yet; choose Push, or other Pins"
-            )
-        done, thickness = asked, Thickness.under(self.drawn, self.grips[0])
-        if thickness is not None and asked.amount > MOST_SQUEEZED * thickness.metres:
-            done = replace(asked, amount=MOST_SQUEEZED * thickness.metres)
-        goals = [self._goal(grip, done.amount) for grip in self._tips.places(done)]
-        self._free.resting.lead(goals)
-        return done
+    def _led(self, hand: FreePush | FreeHold, asked: Asked) -> Asked:
+        """Lead a hand; what is asked of it at most."""
+        # Asked in the axes of the body as it was touched, which may have turned as it came to rest.
+        turn = self.rested.rest.placement.rotation.T @ self._alone.drawn.frame.rotation
+        by = None if asked.by is None else turn @ asked.by
+        amount = hand.lead(replace(asked, by=by)).amount
+        return asked if amount == asked.amount else replace(asked, amount=amount)
 
-    def _goal(self, grip: Grip, depth: float) -> Pose:
-        """Pose in the world of a fingertip that has gone in from where the surface came to rest."""
-        pose = self._tips.pose(grip, depth)
-        place = nearest_place(self.drawn.body, grip.centre(self.drawn.body.mesh))
-        corners = self.drawn.body.mesh.surface_triangles[place.triangle]
-        moved = place.alpha @ self.drawn.node_displacements(self.rested.displacements)[corners]
-        return _in_world(self.rested, Pose(pose.position + moved, pose.rotation))
+    def _hand(self, asked: Asked) -> FreePush | FreeHold | None:
+        """What moves the body; none where the motion only bends it."""
+        match asked.motion:
+            case Motion.PINCH:
+                return None
+            # A pull begins at a depth of -0.
+            case Motion.PUSH if math.copysign(1.0, asked.amount) > 0.0:
+                return self._push
+        return self._hold
+
+    def _pinched(self, asked: Asked) -> Stroked:
+        answer = self._patch.answer(asked.shares(self.grips[0].normal), self.young_modulus)
+        lying = self._alone.now(answer.displacements)
+        # What draws together is balanced: half of it goes one way.
+        force = 0.5 * float(np.linalg.norm(answer.forces, axis=1).sum()) / len(self.grips)
+        return Stroked(lying.displacements, force, answer.torque, lying=lying)
+
+    @cached_property
+    def _push(self) -> FreePush:
+        return FreePush.begin(self._alone, self.rested, self.drawn, self.grips)
+
+    @cached_property
+    def _hold(self) -> FreeHold:
+        return FreeHold.begin(self._alone, self.rested, self.drawn, self.grips)
+
+    @cached_property
+    def _patch(self) -> HeldPatch:
+        drawn = self.drawn
+        normals = drawn.node_normals[drawn.body.mesh.surface_nodes]
+        return HeldPatch.of(drawn.body, self.grips, normals)
 
 
-def _stroked(lying: Lying) -> Stroked:
-    force = float(np.linalg.norm(lying.touches[0].force))
-    return Stroked(lying.displacements, force, touches=lying.touches, lying=lying)
-
-
-def _in_world(rested: Lying, pose: Pose) -> Pose:
-    """Pose in the world of one in the axes of a body that rests."""
-    placement = placement_of(rested.frame)
-    return Pose(
-        placement.rotation @ pose.position + placement.position, placement.rotation @ pose.rotation
+def _stroked(hand: FreePush | FreeHold, lying: Lying) -> Stroked:
+    is_held = isinstance(hand, FreeHold)
+    force, torque = hand.wrench if is_held else (lying.touches[0].force, 0.0)
+    return Stroked(
+        lying.displacements,
+        float(np.linalg.norm(force)),
+        torque,
+        touches=lying.touches,
+        lying=lying,
+        springs_back=is_held,
     )
 
 

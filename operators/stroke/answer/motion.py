@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -42,6 +42,11 @@ class Asked:
     def nothing(self) -> bool:
         """Whether nothing moves."""
         return self.amount == 0.0 and (self.by is None or not self.by.any())
+
+    def part(self, share: float) -> Asked:
+        """A share of it."""
+        by = None if self.by is None else share * self.by
+        return replace(self, amount=share * self.amount, by=by)
 
     def shares(self, normal: Array) -> Array:
         """Shares (5,) of a grip's fields, with the outward unit normal (3,) of its place."""

@@ -12,6 +12,7 @@ import numpy as np
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ...object.drawn_body import DrawnBody
+from ...rest.free_body import Lying
 from .motion import Asked, Motion
 from .pushing import Pushing
 from .stroked import Stroked
@@ -44,6 +45,8 @@ class Stroke:
     grips: tuple[Grip, ...]
     young_modulus: float
     friction: float
+    # Seconds between pictures while the pointer stays: none, for nothing moves then.
+    pace = 0.0
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
         """What a motion does; and what was done of it, where it asked to go deeper than the body is
@@ -81,6 +84,9 @@ class Stroke:
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Nothing moves an object that is pinned."""
+
+    def leave(self, thing: bpy.types.Object, lying: Lying) -> None:
+        """Nothing leaves it elsewhere."""
 
     def give_back(self, thing: bpy.types.Object) -> None:
         """Nothing has moved it."""

@@ -23,6 +23,7 @@ class Stroked:
     torque : newton metres about the normal there.
     touches : of the tools that press, for drawing.
     lying : where a body that nobody holds lies then; None of a pinned one.
+    springs_back : whether nothing of its shape stays once it is let go, but where it lies.
     """
 
     displacements: NDArray[np.float64]
@@ -30,6 +31,7 @@ class Stroked:
     torque: float = 0.0
     touches: tuple[ToolTouch, ...] = ()
     lying: Lying | None = None
+    springs_back: bool = False
 
     @property
     def tools(self) -> tuple[PressingTool, ...]:

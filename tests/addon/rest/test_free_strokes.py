@@ -77,19 +77,119 @@ def test_the_next_push_begins_where_the_object_is_then(free_cube):
     assert layer_names(free_cube) == ["Rests", "Press 1", "Press 2"]
 
 
-@pytest.mark.parametrize(
-    "motion",
-    [
-        {"motion": "GRAB", "by": (0.0, 0.0, 0.01)},
-        {"motion": "TWIST", "angle": 0.5},
-        {"motion": "PUSH", "depth": -0.003},
-    ],
-)
-def test_what_free_bodies_cannot_do_yet_is_refused_and_nothing_has_changed(free_cube, motion):
+SIDE = (0.025, 0.0, 0.0)
+
+
+def height(thing):
+    """Of the lowest place that is seen."""
+    bpy.context.view_layer.update()
+    matrix = np.array(thing.matrix_world)
+    return (seen_places(thing) @ matrix[:3, :3].T + matrix[:3, 3])[:, 2].min()
+
+
+def begun_on(thing, place, mirrored=(False, False, False)):
+    """The body, a stroke on it that has begun, and what motions are asked with."""
+    body = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
+    grips = part("operators.stroke.answer.grips").grips_at(body, np.array(place), RADIUS, mirrored)
+    stroke = part("operators.stroke.answer.free_stroke").FreeStroke.begin(thing, body, grips)
+    return body, stroke, part("operators.stroke.answer.motion")
+
+
+def test_a_grab_carries_the_object_about_and_it_comes_down_where_it_is_let_go(free_cube):
+    bpy.ops.palpate.settle()
+    before = np.array(free_cube.matrix_world)
+    assert push(free_cube, 0.0, place=SIDE, motion="GRAB", by=(0.1, 0.02, 0.3)) == {"FINISHED"}
+    gone = np.array(free_cube.matrix_world)[:3, 3] - before[:3, 3]
+    # It hangs by its side and may come down on another one.
+    np.testing.assert_allclose(gone[:2], (0.1, 0.02), atol=0.03)
+    assert abs(height(free_cube) + 0.025) < 5e-4
+    assert layer_names(free_cube) == ["Rests"]
+
+
+def test_a_grab_lifts_what_is_held(free_cube):
+    _, stroke, motion = begun_on(free_cube, TOP)
+    up = motion.Asked(motion.Motion.GRAB, by=np.array([0.0, 0.0, 0.05]))
+    for _ in range(20):
+        _, on_the_way = stroke.towards(up)
+    _, made = stroke.stroked(up)
+    weight = made.lying.rest.body.mass * 9.81
+    assert made.force == pytest.approx(weight, rel=1e-4)
+    assert np.linalg.norm(made.lying.rest.supports[0].force) == 0.0
+    # What is seen meanwhile is on the way there.
+    moved = np.abs(on_the_way.lying.rest.placement.position - made.lying.rest.placement.position)
+    assert moved.max() < 2e-3
+    _, ended = stroke.ended(up, made)
+    assert ended.springs_back
+    assert ended.lying.rest.supports[0].force[2] == pytest.approx(-weight, rel=1e-4)
+
+
+def test_a_twist_turns_the_object(free_cube):
+    assert push(free_cube, 0.0, motion="TWIST", angle=0.5) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    turned = free_cube.matrix_world.to_euler()
+    # The floor's friction holds it back, and what is held turns farther.
+    assert 0.3 < turned.z <= 0.5
+    assert abs(turned.x) + abs(turned.y) < 0.05
+    assert layer_names(free_cube) == ["Rests"]
+
+
+def test_a_pull_lifts_it_by_its_top_and_lets_it_down(free_cube):
+    bpy.ops.palpate.settle()
+    before = np.array(free_cube.matrix_world)
+    assert push(free_cube, -0.05) == {"FINISHED"}
+    np.testing.assert_allclose(np.array(free_cube.matrix_world), before, atol=5e-3)
+
+
+def test_a_pinch_bends_the_object_where_it_lies(free_cube):
+    bpy.ops.palpate.settle()
+    before = np.array(free_cube.matrix_world)
+    assert push(free_cube, 0.0, motion="PINCH", share=0.5) == {"FINISHED"}
+    assert layer_names(free_cube) == ["Rests", "Press 1"]
+    # It settles before, by what rounding makes of it.
+    np.testing.assert_allclose(np.array(free_cube.matrix_world), before, atol=1e-3)
+
+
+def test_mirrored_hands_turn_nothing_and_stretch_it(free_cube):
+    mirrored = (True, False, False)
+    _, stroke, motion = begun_on(free_cube, SIDE, mirrored)
+    outward = motion.Asked(motion.Motion.GRAB, by=np.array([0.003, 0.0, 0.0]))
+    _, made = stroke.stroked(outward)
+    one, other = (np.sum([t.force for t in made.lying.rest.tools[k : k + 2]], axis=0) for k in (0, 2))
+    assert one[0] < -0.05
+    np.testing.assert_allclose(one[0], -other[0], rtol=0.2)
+
+
+def test_more_mirrored_hands_than_there_are_are_refused(free_cube):
     before = state(free_cube)
-    message = error_of(bpy.ops.palpate.stroke, place=TOP, radius=RADIUS, **motion)
-    assert "only be pushed inward" in message
+    message = error_of(
+        bpy.ops.palpate.stroke,
+        place=(0.02, 0.02, 0.02),
+        radius=0.005,
+        motion="GRAB",
+        by=(0.0, 0.0, 0.01),
+        mirrored=(True, True, True),
+    )
+    assert "two axes" in message
     assert state(free_cube) == before
+
+
+def test_what_is_let_go_over_nothing_is_given_back(free_cube, board):
+    board((0.0, 0.0, -0.025))
+    free_cube.palpate.floor = "NONE"
+    bpy.ops.palpate.settle()
+    before = state(free_cube)
+    message = error_of(
+        bpy.ops.palpate.stroke, place=TOP, radius=RADIUS, motion="GRAB", by=(2.0, 0.0, 0.1)
+    )
+    assert "given back" in message
+    assert state(free_cube) == before
+
+
+def test_an_object_high_above_the_floor_comes_down(free_cube):
+    free_cube.location.z = 5.0
+    free_cube.palpate.floor = "HEIGHT"
+    bpy.ops.palpate.settle()
+    assert abs(height(free_cube)) < 1e-4
 
 
 def test_a_stroke_that_is_given_up_gives_all_back(free_cube):

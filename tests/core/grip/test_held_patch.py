@@ -78,6 +78,45 @@ def test_all_nodes_are_where_a_solve_of_the_whole_body_has_them(exact_mouse, mot
     np.testing.assert_allclose(answer.displacements, expected, rtol=0, atol=atol)
 
 
+@pytest.fixture(scope="module")
+def free_mouse(mouse_mesh):
+    return baked_body(mouse_mesh[0], [], 0.3, 1_000.0, dtype=np.float64)
+
+
+@pytest.mark.parametrize("motion", ["twist", "pinch"])
+def test_a_body_that_nobody_holds_is_bent_as_by_a_solve_of_the_whole(free_mouse, motion):
+    body, shares = free_mouse, MOTIONS[motion]
+    grip = grip_at(body, top(body), 0.12 * size(body))
+    answer = held(body, grip).answer(shares, body.young_modulus)
+    # There it goes along with the hand; how it is bent is the same.
+    expected = solved_by_referee(body, grip, shares)[body.compliance.free_surface]
+    places = body.mesh.nodes[body.compliance.free_surface]
+    bent, wanted = (without_motion(places, one) for one in (answer.displacements, expected))
+    np.testing.assert_allclose(bent, wanted, rtol=0, atol=1e-7 * np.abs(expected).max())
+    largest = np.linalg.norm(answer.forces, axis=1).sum()
+    assert np.linalg.norm(answer.forces.sum(axis=0)) <= 1e-9 * largest
+    arms = body.mesh.nodes[answer.nodes]
+    torque = np.cross(arms, answer.forces).sum(axis=0)
+    assert np.linalg.norm(torque) <= 1e-9 * largest * size(body)
+
+
+def test_what_moves_a_body_that_nobody_holds_takes_no_force(free_mouse):
+    grip = grip_at(free_mouse, top(free_mouse), 0.12 * size(free_mouse))
+    patch = held(free_mouse, grip)
+    drawn = np.abs(patch.answer(drawn_in(0.4), 1.0).displacements).max()
+    assert np.abs(patch.answer(moved([0.01, 0.0, 0.01]), 1.0).displacements).max() < 1e-9 * drawn
+
+
+def without_motion(places, displacements):
+    """Displacements (n, 3) without the rigid motion nearest to them."""
+    arms = places - places.mean(axis=0)
+    turns = [np.cross(axis, arms) for axis in np.eye(3)]
+    moves = [np.broadcast_to(axis, arms.shape) for axis in np.eye(3)]
+    rigid = np.stack([*moves, *turns], axis=-1).reshape(-1, 6)
+    share = np.linalg.lstsq(rigid, displacements.ravel(), rcond=None)[0]
+    return displacements - (rigid @ share).reshape(-1, 3)
+
+
 def solved_by_referee(body, grip, shares):
     """Displacements (N, 3): the core by Dirichlet values, the rim by springs to its hand."""
     mesh = body.mesh

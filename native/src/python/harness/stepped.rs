@@ -178,6 +178,7 @@ impl SteppedServo {
             locked(&self.stepped).ends.snapshots.read(),
             &[],
             Vec::new(),
+            Vec::new(),
         )
     }
 

@@ -253,7 +253,8 @@ impl SteppedFingers {
         let patches = ends.patches.iter_mut();
         let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
         let remembered = ends.remembered.read().nodes().to_vec();
-        Snapshot::of(py, ends.snapshots.read(), &patches, remembered)
+        let borne = ends.borne.read().nodes().to_vec();
+        Snapshot::of(py, ends.snapshots.read(), &patches, remembered, borne)
     }
 }
 

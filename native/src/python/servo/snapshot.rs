@@ -20,6 +20,27 @@ pub struct FingerSnapshot {
 }
 
 impl FingerSnapshot {
+    /// The same in the axes of a body that is placed there.
+    fn seen_from(&self, placement: &Placement) -> Self {
+        let (mut shot, mut patch) = (self.shot, self.patch.clone());
+        for place in [&mut shot.probe, &mut shot.proxy] {
+            *place = placement.place_to_body(*place);
+        }
+        shot.surface_point = (shot.surface_point).map(|point| placement.place_to_body(point));
+        shot.orientation = DMat3::from_quat(placement.rotation.inverse()) * shot.orientation;
+        for direction in [
+            &mut shot.contact_force,
+            &mut shot.output_force,
+            &mut shot.torque,
+        ] {
+            *direction = placement.direction_to_body(*direction);
+        }
+        if let Some(patch) = &mut patch {
+            patch.see_from(placement);
+        }
+        Self { shot, patch }
+    }
+
     fn pressed(&self) -> &[PressedPoint] {
         self.patch.as_ref().map_or(&[], |patch| patch.points())
     }
@@ -147,12 +168,16 @@ impl FingerSnapshot {
     }
 }
 
+/// Forces on nodes of the surface, N.
+type NodalForces = Vec<(u32, DVec3)>;
+
 /// All fingers of a tick, and itself that of finger 0.
 #[pyclass(frozen, extends = FingerSnapshot, module = "palpate_servo")]
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
     placement: Placement,
-    remembered: Vec<(u32, DVec3)>,
+    remembered: NodalForces,
+    borne: NodalForces,
 }
 
 impl Snapshot {
@@ -160,7 +185,8 @@ impl Snapshot {
         py: Python<'_>,
         published: &Published,
         patches: &[PressedPatch],
-        remembered: Vec<(u32, DVec3)>,
+        remembered: NodalForces,
+        borne: NodalForces,
     ) -> PyResult<Py<Self>> {
         let reports = published.fingers().iter().enumerate();
         let fingers: Vec<_> = reports
@@ -174,6 +200,7 @@ impl Snapshot {
             fingers,
             placement: published.placement,
             remembered,
+            borne,
         };
         Py::new(py, (told, first))
     }
@@ -213,6 +240,27 @@ impl Snapshot {
     #[getter]
     fn remembered_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         table(py, self.remembered.iter().map(|&(_, force)| force))
+    }
+    fn seen_from_body(&self, py: Python<'_>) -> PyResult<Py<Self>> {
+        let fingers = self.fingers.iter();
+        let fingers: Vec<_> = fingers.map(|one| one.seen_from(&self.placement)).collect();
+        let first = fingers[0].clone();
+        let (remembered, borne) = (self.remembered.clone(), self.borne.clone());
+        let told = Self {
+            fingers,
+            placement: self.placement,
+            remembered,
+            borne,
+        };
+        Py::new(py, (told, first))
+    }
+    #[getter]
+    fn borne_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        PyArray1::from_iter(py, self.borne.iter().map(|&(node, _)| i64::from(node)))
+    }
+    #[getter]
+    fn borne_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        table(py, self.borne.iter().map(|&(_, force)| force))
     }
     #[getter]
     fn fingers(&self) -> Vec<FingerSnapshot> {

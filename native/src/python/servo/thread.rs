@@ -178,10 +178,22 @@ impl Servo {
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
         let Some(running) = self.current() else {
-            return Snapshot::of(py, &Published::before_the_start(1), &[], Vec::new());
+            return Snapshot::of(
+                py,
+                &Published::before_the_start(1),
+                &[],
+                Vec::new(),
+                Vec::new(),
+            );
         };
         let (published, patches) = running.published_with_patches();
-        Snapshot::of(py, &published, &patches, running.remembered())
+        Snapshot::of(
+            py,
+            &published,
+            &patches,
+            running.remembered(),
+            running.borne(),
+        )
     }
 
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -13,6 +13,7 @@ use crate::control::toll::Toll;
 use crate::creep::shown::Remembered;
 use crate::device::Device;
 use crate::engine::Engine;
+use crate::rest::borne::Borne;
 use crate::rest::prop::Laid;
 use crate::servo::Servo;
 use crate::servo::finger::Finger;
@@ -38,6 +39,8 @@ pub struct Ends {
     pub snapshots: Output<Published>,
     /// What the body remembers of past forces.
     pub remembered: Output<Remembered>,
+    /// What bears a body that nobody holds.
+    pub borne: Output<Borne>,
     /// Every tick, as far as there is room.
     pub samples: Consumer<Sample>,
 }
@@ -58,6 +61,7 @@ impl Servo {
         let before = Published::before_the_start(devices.len());
         let (snapshots_in, snapshots) = triple_buffer(&before);
         let (remembered_in, remembered) = triple_buffer(&Remembered::default());
+        let (borne_in, borne) = triple_buffer(&Borne::default());
         let (samples_in, samples) = touched_ring(most_samples);
         let (prop_giver, prop) = rings(None);
         let (mut tips, mut patches) = (Vec::new(), Vec::new());
@@ -82,6 +86,8 @@ impl Servo {
             engine: Engine::default(),
             remembered: remembered_in,
             remembers_nothing: true,
+            borne: borne_in,
+            nothing_bears: true,
             toll: Toll::default(),
             tick: 0,
             ticked_at: None,
@@ -96,6 +102,7 @@ impl Servo {
             settings: settings_in,
             snapshots,
             remembered,
+            borne,
             samples,
         };
         (servo, ends)

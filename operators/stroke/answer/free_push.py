@@ -1,0 +1,70 @@
+"""Push on an object that nobody holds: fingertips that go in, before which it gives way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....core.contact.place import nearest_place
+from ....core.contact.tool.pose import AIR, Pose
+from ....core.errors import PalpateError
+from ....core.grip.patch import Grip
+from ...object.drawn_body import DrawnBody
+from ...rest.free_body import FreeBody, Lying
+from .fingertips import Fingertips
+from .motion import Asked
+from .pushing import DEEPEST
+from .stroke import MOST_SQUEEZED
+from .thickness import Thickness
+
+
+@dataclass(frozen=True, eq=False)
+class FreePush:
+    """Fingertips over a body that came to rest, and the body among them."""
+
+    tips: Fingertips
+    rested: Lying
+    free: FreeBody
+    refused = DEEPEST
+
+    @classmethod
+    def begin(
+        cls, alone: FreeBody, rested: Lying, drawn: DrawnBody, grips: tuple[Grip, ...]
+    ) -> FreePush:
+        """Set fingertips down on a body that rests ``alone``.
+
+        Raises
+        ------
+        PalpateError
+            They do not fit, or it does not come to rest.
+        """
+        tips = Fingertips.over(drawn, grips)
+        if not tips.reach:
+            raise PalpateError("The fingertip does not fit here; a smaller one does")
+        off = 2.0 * float(np.linalg.norm(rested.displacements, axis=1).max()) + AIR * drawn.size
+        starts = [(tips.tool, rested.in_world(tips.pose(grip, -off))) for grip in grips]
+        free = alone.touched_by(starts, rested.rest.placement)
+        free.resting.settle()
+        return cls(tips, rested, free)
+
+    def lead(self, asked: Asked) -> Asked:
+        """Have the fingertips go in as asked; what is asked of them at most."""
+        tips, done = self.tips, asked
+        thickness = Thickness.under(tips.drawn, tips.grips[0])
+        if thickness is not None and asked.amount > MOST_SQUEEZED * thickness.metres:
+            done = replace(asked, amount=MOST_SQUEEZED * thickness.metres)
+        self.free.resting.lead([self._goal(grip, done.amount) for grip in tips.places(done)])
+        return done
+
+    def parts(self, _asked: Asked) -> int:
+        """In how many parts it goes in: a fingertip takes its time by itself."""
+        return 1
+
+    def _goal(self, grip: Grip, depth: float) -> Pose:
+        """Pose in the world of a fingertip that has gone in from where the surface came to rest."""
+        pose, drawn = self.tips.pose(grip, depth), self.tips.drawn
+        place = nearest_place(drawn.body, grip.centre(drawn.body.mesh))
+        corners = drawn.body.mesh.surface_triangles[place.triangle]
+        moved = place.alpha @ drawn.node_displacements(self.rested.displacements)[corners]
+        return self.rested.in_world(Pose(pose.position + moved, pose.rotation))
