@@ -53,6 +53,7 @@ operators/tool
 operators/device
 operators/record
 operators/shape
+operators/lying
 operators/session
 operators/rest
 operators/bake

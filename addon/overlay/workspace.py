@@ -41,7 +41,7 @@ def _of_device(session: PressSession) -> list[tuple[Array, Array]]:
     frame = loop.settings.devices[0]
     if device is None or frame is None:
         return []
-    return _lines(np.array(device["half_extents"]), frame, session.frames[0])
+    return _lines(np.array(device["half_extents"]), frame, session.hands[0])
 
 
 def _of_plane(context: bpy.types.Context) -> list[tuple[Array, Array]]:

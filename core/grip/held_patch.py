@@ -10,9 +10,9 @@ at the rim, where that of a rigid patch would be infinite and draw an edge into 
 all forces with these springs they are those of least energy. D_i = R (1 / w_i - 1) / (a_i E) for a
 firmness w_i, a share a_i of the surface and the radius R: the same hand on any mesh.
 
-A body that nobody holds gives way to all that does not balance. Of it the forces do, R^T F = 0 with
-its rigid motions R, and the hand goes along with what they leave free, ``(L_SS + D) F = g - R q``: it
-draws a patch together or apart, and what moves or turns it as a whole takes no force.
+A body that nobody holds gives way to all that does not balance. So its forces do, R^T F = 0 with
+its rigid motions R, and the hand goes along with what these leave free, ``(L_SS + D) F = g - R q``:
+it draws a patch together or apart, and what moves or turns it as a whole takes no force.
 
 As L is linear, each of the five fields of :mod:`.motions` is answered once; a frame is a sum.
 """

@@ -120,12 +120,15 @@ def servo_on(
 def drawn_loads(snapshot: Snapshot) -> list[tuple[NDArray[np.int64], NDArray[np.float64]]]:
     """Nodes (k,) of the surface and forces (k, 3), N, under which the body looks as it does.
 
-    A load a finger, or one of all that a body remembers which gives way with time.
+    A load a finger, and one of what bears it; or one of all that a body remembers which gives way
+    with time.
     """
     if len(snapshot.remembered_nodes):
         return [(snapshot.remembered_nodes, snapshot.remembered_forces)]
     fingers = snapshot.fingers
-    return [(finger.nodes, finger.nodal_forces) for finger in fingers if len(finger.nodes)]
+    loads = [(finger.nodes, finger.nodal_forces) for finger in fingers if len(finger.nodes)]
+    borne = [(snapshot.borne_nodes, snapshot.borne_forces)] if len(snapshot.borne_nodes) else []
+    return loads + borne
 
 
 def displacements_of(

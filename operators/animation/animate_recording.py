@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 
@@ -41,12 +43,14 @@ class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
                 name=thing.name,
             )
         frame = drawn_surface.frame_of(thing, scene)
+        if kept.in_world:
+            frame = replace(frame, rotation=np.eye(3), stretch=np.eye(3), origin=np.zeros(3))
         rate = scene.render.fps / scene.render.fps_base
         first = scene.frame_current
-        made = []
+        made, size = [], drawn_surface.size_of(thing, scene)
         for finger in np.unique(kept.samples["finger"])[:2]:
             frames = frames_of(kept.samples, int(finger), rate)
-            made.append(_probe(thing, scene, frame, frames))
+            made.append(_probe(None if kept.in_world else thing, scene, frame, frames, size))
         chosen = scene.palpate
         chosen.source, chosen.source_empty = "EMPTY", made[0]
         if len(made) > 1:
@@ -60,17 +64,23 @@ class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
 
 
 def _probe(
-    thing: bpy.types.Object, scene: bpy.types.Scene, frame: BodyFrame, frames: Frames
+    parent: bpy.types.Object | None,
+    scene: bpy.types.Scene,
+    frame: BodyFrame,
+    frames: Frames,
+    size: float,
 ) -> bpy.types.Object:
-    """Empty that moves with the object as the finger did on its body; force in world axes."""
+    """Empty that moves as the finger did, with its ``parent`` if it has one, in the frame of that;
+    force in world axes. ``size`` of the object, metres.
+    """
     probe = bpy.data.objects.new(PROBE_NAME, None)
     scene.collection.objects.link(probe)
     probe.empty_display_type = "SPHERE"
     # In the units of its parent, whose scale it has.
     metres = float(np.cbrt(abs(np.linalg.det(frame.metric))))
-    sizes = chosen_sizes(scene, drawn_surface.size_of(thing, scene))
+    sizes = chosen_sizes(scene, size)
     probe.empty_display_size = sizes.tip_radius / metres
-    probe.parent = thing
+    probe.parent = parent
     force = frame.turn_to_world(frames.force)
     probe["force_N"] = force[0].tolist()
     probe["strength_N"] = 0.0

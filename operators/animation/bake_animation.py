@@ -16,13 +16,13 @@ from ...core.sentence import Sentence
 from ..imprint import kept_imprint
 from ..imprint.surface_imprint import yielding_of
 from ..layer import place_marks, stack
+from ..lying.supports import supports_of
 from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
 from ..reporting.wait_cursor import wait_cursor
 from ..rest.keyed import key_places, refuse_others
-from ..rest.supports import supports_of
 from ..scene.body_frame import BodyFrame
 from ..scene.modal_progress import ModalProgress
 from ..shape.drawn_shape import closing_shape

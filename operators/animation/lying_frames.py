@@ -10,10 +10,10 @@ import numpy as np
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.rest.following import Ways, follow
+from ..lying.free_body import FreeBody, lie, supports_under
+from ..lying.supports import Supports, same_shapes, supports_of
 from ..object.drawn_body import DrawnBody
 from ..place.evaluation import evaluated
-from ..rest.free_body import FreeBody, lie, supports_under
-from ..rest.supports import Supports, same_shapes, supports_of
 from ..scene.drawn_surface import frame_of, metres_per_unit
 from .pressed_frames import PressedFrame, same_tools
 from .pressers import Presser, pressers_of

@@ -9,8 +9,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool.pose import resting_on
+from ...core.contact.tool.pose import Pose, resting_on
 from ...core.errors import PalpateError
+from ...core.rest.prop import WORLD
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..object.drawn_body import DrawnBody
@@ -89,9 +90,11 @@ def device_frame(
     body: BodyFrame,
     home: DeviceFrame,
     finger: int = 0,
+    of_object: BodyFrame | None = None,
 ) -> DeviceFrame:
     """Frame of the first or the second finger's device: of its Empty, else ``home``, which is in
-    the body at rest. ``body`` is the finger's local frame.
+    the body at rest. ``body`` is the finger's local frame, ``of_object`` that of the object, None
+    for where it is now.
 
     Raises
     ------
@@ -101,7 +104,7 @@ def device_frame(
     chosen = scene.palpate
     empty = chosen.second_frame if finger else chosen.device_frame
     if empty is None:
-        of_object = drawn_surface.frame_of(thing, scene)
+        of_object = of_object or drawn_surface.frame_of(thing, scene)
         return replace(_in_pose(home, of_object, body), scale=chosen.device_scale)
     return _frame_of_empty(empty, body, chosen.device_scale)
 
@@ -138,9 +141,9 @@ def port_of(scene: bpy.types.Scene) -> str:
     return port
 
 
-def _top(drawn: DrawnBody, up: Array) -> Array:
-    """Surface point above the body's middle."""
-    nodes, triangles = drawn.body.mesh.nodes, drawn.body.mesh.surface_triangles
+def _top(drawn: DrawnBody, up: Array, where: Pose) -> Array:
+    """Surface point above the middle of a body that is placed there."""
+    nodes, triangles = where.to_world(drawn.body.mesh.nodes), drawn.body.mesh.surface_triangles
     above = nodes.mean(axis=0) + 2.0 * drawn.size * up
     hit = ray.first_hit(above, -up, nodes, triangles)
     if hit is None:
@@ -157,9 +160,11 @@ def start_simulated(
     up: Array = FROM_ABOVE,
     haply: str | None = None,
     tip: FingerTip = POINT,
+    where: Pose = WORLD,
 ) -> SimulatedDevice:
-    """Start the simulated device, whose hand presses the body from the direction ``up`` (3,), body
-    axes, repeatedly, by default on its top, with the surface of its ``tip``.
+    """Start the simulated device, whose hand presses the body from the direction ``up`` (3,), the
+    hand's axes, repeatedly, by default on its top, with the surface of its ``tip``. The body is
+    placed ``where``, as the hand sees it.
 
     ``haply`` is the model of a Haply 2DIY to simulate: it presses in the device's plane, within
     its arms' reach.
@@ -170,11 +175,11 @@ def start_simulated(
         It does not start.
     """
     above, deep = SIMULATED_REST * drawn.size, min(SIMULATED_DEPTH * drawn.size, tip.deepest)
-    top = _top(drawn, up)
+    top = _top(drawn, up, where)
     lift = 0.0
     if tip.tool is not None:
         # Out of contact with all of the surface between its presses: only so it can come anew.
-        resting = resting_on(tip.tool, np.eye(3), top, up, drawn.surface_nodes)
+        resting = resting_on(tip.tool, np.eye(3), top, up, where.to_world(drawn.surface_nodes))
         lift = float((resting.position - top) @ up) + SIMULATED_AIR * drawn.size
         deep += SIMULATED_AIR * drawn.size
     if haply is None:

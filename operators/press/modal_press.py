@@ -125,9 +125,11 @@ class ModalPress(Pressing):
             self._show(context)
             return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
         self._stay.end(context)
-        if not self._session.kept_name:
+        if not self._session.kept:
             return {"CANCELLED"}
-        self.report({"INFO"}, reported("Kept as layer '{layer}'", layer=self._session.kept_name))
+        if self._session.kept_name:
+            name = self._session.kept_name
+            self.report({"INFO"}, reported("Kept as layer '{layer}'", layer=name))
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:

@@ -22,13 +22,15 @@ BYTES_A_TICK = DTYPE.itemsize
 @dataclass(frozen=True, eq=False)
 class Kept:
     """Recorded ticks of an ended press, structured array (n,) of ``DTYPE``, and the object that was
-    pressed; None where nobody says.
+    pressed; None where nobody says. Places and forces are those in the body's axes, or ``in_world``
+    of one that nobody held.
     """
 
     samples: NDArray[np.void]
     rate_hz: int
     lost: int = 0
     pressed: ObjectHandle | None = None
+    in_world: bool = False
 
 
 @dataclass(eq=False)
@@ -41,6 +43,7 @@ class Recorder:
     servo: Servo
     rate_hz: int
     pressed: ObjectHandle | None = None
+    in_world: bool = False
     wanted: bool = False
     full: bool = False
     seconds: float = 0.0
@@ -89,7 +92,7 @@ class Recorder:
     def kept(self) -> Kept:
         """All ticks so far, a copy."""
         lost = self.servo.recording_lost
-        return Kept(self.servo.recording(), self.rate_hz, lost, self.pressed)
+        return Kept(self.servo.recording(), self.rate_hz, lost, self.pressed, self.in_world)
 
 
 _last: Kept | None = None

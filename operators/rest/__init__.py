@@ -1,1 +1,1 @@
-"""Bodies that nobody holds: what they rest on, how they come to lie, and their objects."""
+"""Operators on objects that nobody holds: how they come to lie, and are brought back."""

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import bpy
 
 from ...core.errors import PalpateError
+from ..lying import rest_layer
+from ..lying.laid import CHANNELS, is_animated, place, remember
 from ..scene import curves
 from ..scene.body_frame import BodyFrame
-from . import rest_layer
-from .laid import CHANNELS, is_animated, place, remember
 
 ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 

@@ -6,13 +6,13 @@ import bpy
 
 from ..layer import live_layer
 from ..layer.stack import PLAYERS
+from ..lying import rest_layer
+from ..lying.laid import CHANNELS, bring_back
 from ..object import soft_object
 from ..played import mesh_cache
 from ..reporting.acting import Acting
 from ..scene import curves
 from ..session import press_session
-from . import rest_layer
-from .laid import CHANNELS, bring_back
 
 
 class PALPATE_OT_reset_rest(Acting, bpy.types.Operator):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.contact.tool.pose import Pose
 from ...core.errors import PalpateError
 
 Array = NDArray[np.float64]
@@ -128,6 +129,10 @@ class BodyFrame:
         rotation = self.rotation @ turn
         origin = self.world_from_body(seen) - rotation @ rest / self.metres_per_unit
         return replace(self, rotation=rotation, origin=origin)
+
+    def pose_in(self, other: BodyFrame) -> Pose:
+        """Where this frame's body coordinates are in those of another, metres."""
+        return Pose(other.body_from_world(self.origin), other.rotation.T @ self.rotation)
 
     def wind(self, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Triangles (m, 3) of the local surface, rewound if mirrored."""

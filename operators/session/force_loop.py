@@ -11,7 +11,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.contact.tool.pose import Pose
 from ...core.errors import PalpateError
+from ...core.rest.prop import WORLD
 from ...core.servo.session import (
     Body,
     HaplyDevice,
@@ -27,6 +29,7 @@ from ...simulated.simulated_process import SimulatedDevice
 from ..device import device_source
 from ..device.device_source import DeviceFrame
 from ..device.loop_figures import LoopFigures
+from ..lying.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..record import recording
 from ..record.recording import Recorder
@@ -51,6 +54,7 @@ class ForceLoop:
     drawn: DrawnBody
     touched: Body
     tip: FingerTip
+    prop: PressedProp | None = None
     simulated: SimulatedDevice | None = None
     second_simulated: SimulatedDevice | None = None
     port: str = ""
@@ -61,20 +65,29 @@ class ForceLoop:
 
     @classmethod
     def prepare(
-        cls, drawn: DrawnBody, settings: LiveSettings, rate_hz: int, tip: FingerTip, fingers: int
+        cls,
+        drawn: DrawnBody,
+        settings: LiveSettings,
+        rate_hz: int,
+        tip: FingerTip,
+        fingers: int,
+        prop: PressedProp | None = None,
     ) -> ForceLoop:
-        """Loop that does not run yet, for a number of fingers, with the present settings.
+        """Loop that does not run yet, for a number of fingers, with the present settings; of a
+        ``prop`` its hands are in the world.
 
         Raises
         ------
         PalpateError
             A body that cannot be touched, or a setting that the servo refuses.
         """
-        gives_way = bool(settings.servo.relaxation)
-        is_whole = fingers > 1 or tip.tool is not None or gives_way
-        touched = native_body(drawn.body, whole=is_whole)
-        servo = servo_on(touched, settings.servo, rate_hz=rate_hz)
-        return cls(servo, settings, Recorder(servo, rate_hz), drawn, touched, tip)
+        moves, gives_way = prop is not None, bool(settings.servo.relaxation)
+        is_whole = moves or fingers > 1 or tip.tool is not None or gives_way
+        touched = native_body(drawn.body, whole=is_whole, may_move=moves)
+        laid = None if prop is None else prop.native(touched)
+        servo = servo_on(touched, settings.servo, rate_hz=rate_hz, prop=laid)
+        recorder = Recorder(servo, rate_hz, in_world=moves)
+        return cls(servo, settings, recorder, drawn, touched, tip, prop)
 
     def give_tools(self, fingers: int) -> None:
         """Give the chosen tool to a number of fingers; points need none."""
@@ -106,7 +119,7 @@ class ForceLoop:
         if chosen.second == "SIMULATED":
             up = local.turn_to_body(device_source.FROM_THE_SIDE)
             self.second_simulated = device_source.start_simulated(
-                self.drawn, frame, up, tip=self.tip
+                self.drawn, frame, up, tip=self.tip, where=self._where
             )
             port = self.second_simulated.port
         else:
@@ -146,7 +159,7 @@ class ForceLoop:
         if chosen.source == "SIMULATED":
             up = local.turn_to_body(device_source.FROM_ABOVE)
             self.simulated = device_source.start_simulated(
-                self.drawn, frame, up, haply, tip=self.tip
+                self.drawn, frame, up, haply, tip=self.tip, where=self._where
             )
             self.port = self.simulated.port
         else:
@@ -156,6 +169,11 @@ class ForceLoop:
         with servo_errors():
             baud = chosen.baud if chosen.source == "SERIAL" else 0
             self.servo.start(_device_at(self.port, baud, frame, haply, at_rest))
+
+    @property
+    def _where(self) -> Pose:
+        """Where the body is as its hands see it, before they press."""
+        return WORLD if self.prop is None else self.prop.start
 
     def _device_frame(self, finger: int) -> DeviceFrame:
         frame = self.settings.devices[finger]

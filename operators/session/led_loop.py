@@ -13,6 +13,7 @@ from ...core.sentence import Sentence
 from ...core.servo.session import FingerSnapshot, Snapshot
 from ..device import device_source
 from ..device.device_source import DeviceFrame
+from ..lying.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
 from ..scene.body_frame import BodyFrame, as_point
@@ -35,8 +36,9 @@ def start_loop(
     leads: Sequence[FingerLead],
     frames: Sequence[BodyFrame],
     tip: FingerTip,
+    prop: PressedProp | None = None,
 ) -> ForceLoop:
-    """Running loop for these fingers, each in its local frame, recorded from its start if
+    """Running loop for these fingers, each in the frame of its hand, recorded from its start if
     the scene chooses so.
 
     Raises
@@ -44,7 +46,7 @@ def start_loop(
     PalpateError
         The body cannot be touched, a device is not there, or the servo refuses a setting.
     """
-    loop = ForceLoop.prepare(drawn, settings, scene.palpate.rate, tip, len(leads))
+    loop = ForceLoop.prepare(drawn, settings, scene.palpate.rate, tip, len(leads), prop)
     loop.recorder.pressed = ObjectHandle.of(thing)
     try:
         for lead, frame in zip(leads[1:], frames[1:], strict=True):
@@ -83,10 +85,12 @@ def present_settings(
     scene: bpy.types.Scene,
     homes: Sequence[DeviceFrame | None],
     frames: Sequence[BodyFrame],
+    of_object: BodyFrame,
     before: Sequence[DeviceFrame | None] = (),
 ) -> tuple[LiveSettings, list[str]]:
     """Settings as they are now, and a sentence for each obstacle: a device keeps its frame of
-    ``before`` while its Empty is unusable. ``frames`` are the fingers' local ones.
+    ``before`` while its Empty is unusable. ``frames`` are the hands', ``of_object`` is where homes
+    are.
 
     Raises
     ------
@@ -99,7 +103,7 @@ def present_settings(
         found = None
         if home is not None:
             try:
-                found = device_source.device_frame(thing, scene, local, home, finger)
+                found = device_source.device_frame(thing, scene, local, home, finger, of_object)
             except PalpateError as problem:
                 if not before:
                     raise
@@ -175,7 +179,8 @@ def _start_of(lead: FingerLead, drawn: DrawnBody, frame: BodyFrame) -> Point:
     empty = lead.empty.find() if lead.empty is not None else None
     if empty is not None:
         return _place_of(empty, frame)
-    x, y, z = drawn.body.mesh.nodes.mean(axis=0).tolist()
+    middle = drawn.frame.world_from_body(drawn.body.mesh.nodes.mean(axis=0))
+    x, y, z = frame.body_from_world(middle).tolist()
     return (x, y, z + drawn.size)
 
 

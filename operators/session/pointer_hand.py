@@ -130,16 +130,21 @@ class PointerHand:
         session = self.session
         point, normal = session.drawn.surface_place(near)
         tool = session.tip.tool
+        to_hand = session.frames[finger].pose_in(session.hands[finger])
+        outward = to_hand.rotation @ normal
+        # Out of how an object that nobody holds bulges where it rests.
+        point = point + session.air * normal
         if tool is None:
             start = point + SET_DOWN_HEIGHT * session.drawn.size * normal
-            return Held(start, normal, session.tip.deepest), None
+            return Held(to_hand.to_world(start), outward, session.tip.deepest), None
         rotation = tool_turn.rotation(session.scene, session.frames[finger], normal, view_axes)
         pose = resting_on(tool, rotation, point, normal, session.seen.surface_samples)
-        return Held(pose.position, normal, session.tip.deepest), tool_turn.as_rows(rotation)
+        held = Held(to_hand.to_world(pose.position), outward, session.tip.deepest)
+        return held, tool_turn.as_rows(to_hand.rotation @ rotation)
 
     def _begin(self, here: Viewport, event: bpy.types.Event, finger: int, held: Held) -> bool:
         """Start to drag a finger; False behind the viewer, where there is no scale."""
-        view = here.view_at(held.target, self.session.frames[finger])
+        view = here.view_at(held.target, self.session.hands[finger])
         if view is None:
             return False
         cursor = (event.mouse_x, event.mouse_y)
@@ -174,7 +179,7 @@ class PointerHand:
         return nearest if self._pixels_away(here, nearest) <= GRAB_PIXELS * scale else None
 
     def _pixels_away(self, here: Viewport, finger: int) -> float:
-        place = self.session.frames[finger].world_from_body(self.held[finger].target)
+        place = self.session.hands[finger].world_from_body(self.held[finger].target)
         seen = view3d_utils.location_3d_to_region_2d(here.region, here.region_3d, Vector(place))
         return np.inf if seen is None else float(np.hypot(*np.subtract(seen, here.cursor)))
 

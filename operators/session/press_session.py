@@ -18,16 +18,14 @@ from ...core.errors import PalpateError
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ..device import servo_words
-from ..device.device_source import DeviceFrame
 from ..layer import live_layer, place_marks
-from ..object.drawn_body import DrawnBody, open_pinned
-from ..place.touched_place import TouchedPlace
-from ..scene.body_frame import BodyFrame
+from ..lying.pressed_prop import PressedProp
+from ..object.drawn_body import open_body
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
-from .finger_leads import BOTH_POINTER, FingerLead, Lead, leads_of
+from .finger_leads import BOTH_POINTER, Lead, leads_of
 from .force_loop import ForceLoop
-from .led_loop import free_places, homes_of, lead_fingers, present_settings, record, start_loop
+from .led_loop import homes_of, lead_fingers, present_settings, record, start_loop
 from .press_effects import Act, Effect, Say, StartServo, SwitchForce
 from .press_events import (
     BringBack,
@@ -42,32 +40,25 @@ from .press_events import (
     Start,
 )
 from .press_state import Phase, PressState, transition
-from .pressed_object import local_frames, moved_along, places_along, reason_to_end
+from .pressed_object import PressedObject, reason_to_end
 from .seen_body import SeenBody
 
 
 @dataclass(eq=False)
-class PressSession:
+class PressSession(PressedObject):
     """Press of one object. Make one with :func:`begin`; it is :func:`current` until it ends.
 
-    ``leads`` move the fingers, ``tip`` is their tool or point, ``seen`` the drawn body, ``area``
-    the address of the 3D view where it began, 0 for none, ``places`` what each finger touches: it
-    feels the body in the local frame of its own. ``homes`` are the frames of devices that no
-    Empty places, None for a finger without a device.
+    ``tip`` is the fingers' tool or point, ``seen`` the drawn body, ``area`` the address of the 3D
+    view where it began, 0 for none. ``kept`` says that the object was left as it was pressed, as
+    the layer ``kept_name`` where a finger did so then.
     """
 
-    handle: ObjectHandle
-    scene_name: str
-    drawn: DrawnBody
-    homes: tuple[DeviceFrame | None, ...]
-    leads: tuple[FingerLead, ...] = (FingerLead(Lead.POINTER),)
     tip: FingerTip = field(default_factory=FingerTip)
     state: PressState = field(default_factory=PressState)
     loop: ForceLoop | None = None
-    snapshot: Snapshot | None = None
+    kept: bool = False
     kept_name: str = ""
     area: int = 0
-    places: tuple[TouchedPlace | None, ...] = ()
     said: list[Say] = field(default_factory=list)
     _problems: list[str] = field(default_factory=list)
     _reported: frozenset[str] = frozenset()
@@ -99,11 +90,12 @@ class PressSession:
         if thing is None or loop is None:
             return True
         settings, problems = present_settings(
-            thing, self.scene, self.homes, self.frames, loop.settings.devices
+            thing, self.scene, self.homes, self.hands, self.home, loop.settings.devices
         )
         loop.follow(settings)
-        self._problems += problems + lead_fingers(loop, self.leads, self.scene, self.frames)
-        snapshot = loop.snapshot()
+        self._problems += problems + lead_fingers(loop, self.leads, self.scene, self.hands)
+        snapshot = self.as_seen(thing, loop.snapshot(), withdrawn=self.state.withdrawn)
+        self.seen.drawn = self.drawn
         moved = self.snapshot is None or snapshot.tick != self.snapshot.tick
         self.snapshot = snapshot
         self._watch_faults(snapshot)
@@ -111,11 +103,6 @@ class PressSession:
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus)
         return moved
-
-    def touch(self, place: TouchedPlace, thing: bpy.types.Object, finger: int = 0) -> None:
-        """Press at a place as it is seen from now on, by one of the fingers."""
-        self.places = (*self.places[:finger], place, *self.places[finger + 1 :])
-        self._follow_frame(thing)
 
     def switch_force(self) -> None:
         """Switch the device's force off at once, or on with a ramp."""
@@ -133,25 +120,10 @@ class PressSession:
         if self.loop is not None:
             record(self.loop, self.scene, 0.0 if self.snapshot is None else self.snapshot.time)
 
-    @property
-    def scene(self) -> bpy.types.Scene:
-        """Scene in which the press began, or the present one if that is gone."""
-        return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
-
     @cached_property
     def seen(self) -> SeenBody:
         """Drawn body."""
-        return SeenBody(self.drawn, self.tip)
-
-    @property
-    def frames(self) -> tuple[BodyFrame, ...]:
-        """Local frame of the body of each finger."""
-        return local_frames(self.drawn.frame, self.places)
-
-    @property
-    def pinches(self) -> bool:
-        """Whether the pointer has two handles."""
-        return self.leads == BOTH_POINTER
+        return SeenBody(self.drawn, self.tip, self.prop)
 
     @property
     def awaits_device(self) -> bool:
@@ -162,8 +134,7 @@ class PressSession:
     def _apply(self, effect: Effect) -> None:
         match effect:
             case Act.HANG_LIVE_LAYER:
-                self._with_object(live_layer.hang)
-                self.seen.drawn_contact = ()
+                self._with_object(self._hang)
             case StartServo():
                 self._start_loop()
             case SetDown() | Move() | SwitchForce():
@@ -175,8 +146,7 @@ class PressSession:
             case Act.STOP_SERVO:
                 self._stop_loop()
             case Act.REMOVE_LIVE_LAYER:
-                self._with_object(live_layer.leave_edit_mode)
-                self._with_object(live_layer.remove)
+                self._with_object(self._restore)
             case Act.KEEP_SHAPE:
                 self._with_object(self._keep)
             case Say():
@@ -193,8 +163,21 @@ class PressSession:
         if thing is not None:
             act(thing)
 
+    def _hang(self, thing: bpy.types.Object) -> None:
+        if self.prop is not None:
+            self.prop.make_ready(thing)
+        live_layer.hang(thing)
+        self.seen.drawn_contact = ()
+
+    def _restore(self, thing: bpy.types.Object) -> None:
+        live_layer.leave_edit_mode(thing)
+        live_layer.remove(thing)
+        if self.prop is not None:
+            self.prop.give_back(thing)
+
     def _keep(self, thing: bpy.types.Object) -> None:
         self.kept_name, said = self.seen.keep(thing, self.scene, self.snapshot)
+        self.kept = bool(self.kept_name) or self.prop is not None
         self.said += said
 
     def _start_loop(self) -> None:
@@ -203,11 +186,13 @@ class PressSession:
             raise PalpateError("{name} is gone; choose another object", name=self.handle.name)
         if place_marks.hung(thing):
             bpy.context.view_layer.update()
-        self._follow_frame(thing)
-        scene, frames = self.scene, self.frames
-        settings, _ = present_settings(thing, scene, self.homes, frames)
-        self.loop = start_loop(thing, scene, self.drawn, settings, self.leads, frames, self.tip)
-        self._problems += lead_fingers(self.loop, self.leads, scene, frames)
+        self.follow_frame(thing)
+        scene, hands = self.scene, self.hands
+        settings, _ = present_settings(thing, scene, self.homes, hands, self.home)
+        self.loop = start_loop(
+            thing, scene, self.drawn, settings, self.leads, hands, self.tip, self.prop
+        )
+        self._problems += lead_fingers(self.loop, self.leads, scene, hands)
 
     def _stop_loop(self) -> None:
         loop, self.loop = self.loop, None
@@ -218,21 +203,12 @@ class PressSession:
         """The object, if the press can continue on it; else the press ends."""
         thing = self.handle.find()
         reason = reason_to_end(thing, self.drawn, withdrawn=self.state.withdrawn)
-        if thing is not None and not reason and not self._follow_frame(thing):
+        if thing is not None and not reason and not self.follow_frame(thing):
             reason = "{name} was scaled; press Make Soft to bake it again"
         if reason:
             self.post(GiveWay(Sentence(reason, name=(thing or self.handle).name)))
             return None
         return thing
-
-    def _follow_frame(self, thing: bpy.types.Object) -> bool:
-        moved = moved_along(thing, self.scene, self.drawn)
-        if moved is None:
-            return False
-        self.drawn = self.seen.drawn = moved
-        free = free_places(self.leads, self.snapshot, self.frames)
-        self.places = places_along(thing, moved.frame, self.places, free)
-        return True
 
     def _report_problems(self, loop: ForceLoop) -> None:
         """Report each problem once, when it begins."""
@@ -279,10 +255,12 @@ def begin(
         busy = _current.handle.name
         raise PalpateError("{name} is being pressed; end that first (Escape)", name=busy)
     leads = BOTH_POINTER if pinch else leads_of(scene, source)
-    drawn = open_pinned(thing, scene)
+    drawn = open_body(thing, scene)
+    prop = PressedProp.begin(thing, drawn)
+    drawn = drawn if prop is None else prop.drawn
     tip = chosen_tip(scene, thing, drawn.size)
     homes = homes_of(thing, scene, drawn.frame, leads)
-    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, homes, leads, tip)
+    session = PressSession(ObjectHandle.of(thing), scene.name, drawn, homes, leads, prop, tip=tip)
     session.places = (None,) * len(leads)
     session.said += [Say(tip.remark, warning=True)] if tip.remark else []
     _current = session

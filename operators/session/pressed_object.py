@@ -1,20 +1,29 @@
-"""Object under a press: whether it is still what the press began with, and where its places are."""
+"""Object under a press: whether it is still what the press began with, where its places are, and
+the hands on it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...core.servo.session import Snapshot
+from ..device.device_source import DeviceFrame
 from ..layer import layers, live_layer, place_marks
+from ..lying.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of
+from ..scene.object_handle import ObjectHandle
+from .finger_leads import BOTH_POINTER, FingerLead, Lead
+from .led_loop import free_places
 
 Array = NDArray[np.float64]
 
@@ -66,3 +75,77 @@ def places_along(
 def local_frames(frame: BodyFrame, places: Sequence[TouchedPlace | None]) -> tuple[BodyFrame, ...]:
     """Local frame of each finger's place, by the object's."""
     return tuple(frame if place is None else place.frame(frame) for place in places)
+
+
+@dataclass(eq=False)
+class PressedObject:
+    """Object under a press.
+
+    ``leads`` move the fingers, ``places`` are what each touches: it feels the body in the local
+    frame of its own. ``homes`` are the frames of devices that no Empty places, None for a finger
+    without a device. ``prop`` is the object where nobody holds it, and ``snapshot`` the last tick
+    as seen from its body.
+    """
+
+    handle: ObjectHandle
+    scene_name: str
+    drawn: DrawnBody
+    homes: tuple[DeviceFrame | None, ...]
+    leads: tuple[FingerLead, ...] = (FingerLead(Lead.POINTER),)
+    prop: PressedProp | None = None
+    snapshot: Snapshot | None = None
+    places: tuple[TouchedPlace | None, ...] = ()
+
+    @property
+    def scene(self) -> bpy.types.Scene:
+        """Scene in which the press began, or the present one if that is gone."""
+        return bpy.data.scenes.get(self.scene_name) or bpy.context.scene
+
+    @property
+    def frames(self) -> tuple[BodyFrame, ...]:
+        """Local frame of the body of each finger."""
+        return local_frames(self.drawn.frame, self.places)
+
+    @property
+    def hands(self) -> tuple[BodyFrame, ...]:
+        """Frame in which each finger is led: its local one, or the world."""
+        return self.frames if self.prop is None else (self.prop.world,) * len(self.leads)
+
+    @property
+    def air(self) -> float:
+        """How far off the surface at rest fingers are set down, metres."""
+        return 0.0 if self.prop is None else self.prop.air
+
+    @property
+    def home(self) -> BodyFrame:
+        """Frame of the object in which homes are."""
+        return self.drawn.frame if self.prop is None else self.prop.drawn.frame
+
+    @property
+    def pinches(self) -> bool:
+        """Whether the pointer has two handles."""
+        return self.leads == BOTH_POINTER
+
+    def touch(self, place: TouchedPlace, thing: bpy.types.Object, finger: int = 0) -> None:
+        """Press at a place as it is seen from now on, by one of the fingers."""
+        self.places = (*self.places[:finger], place, *self.places[finger + 1 :])
+        self.follow_frame(thing)
+
+    def follow_frame(self, thing: bpy.types.Object) -> bool:
+        """Follow the object; False if it was scaled, sheared or flattened."""
+        moved = moved_along(thing, self.scene, self.drawn)
+        if moved is None or self.prop is not None:
+            # The servo says where it is.
+            return moved is not None
+        self.drawn = moved
+        free = free_places(self.leads, self.snapshot, self.frames)
+        self.places = places_along(thing, moved.frame, self.places, free)
+        return True
+
+    def as_seen(self, thing: bpy.types.Object, snapshot: Snapshot, *, withdrawn: bool) -> Snapshot:
+        """A tick as the body sees it, and the object where that left it."""
+        if self.prop is None:
+            return snapshot
+        if not withdrawn:
+            self.drawn = self.prop.follow(thing, self.drawn, snapshot)
+        return snapshot.seen_from_body()

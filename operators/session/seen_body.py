@@ -17,6 +17,7 @@ from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
 from ..imprint.surface_imprint import SurfaceImprint, yielding_of
 from ..layer import live_layer
+from ..lying.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..shape.drawn_shape import DrawnShape, chosen_shape, loads_of
 from ..tool.finger_tip import FingerTip
@@ -34,11 +35,14 @@ KEPT_EARLY = "It is kept as far as it was computed, {share} %"
 @dataclass(eq=False)
 class SeenBody:
     """Drawn body: ``displacements`` (n, 3) of the free surface nodes as drawn, and ``linear`` as
-    the force was computed with; None while nothing touches.
+    the force was computed with; None while nothing touches. ``prop`` is what it is where nobody
+    holds it, and ``touches`` whether a finger does.
     """
 
     drawn: DrawnBody
     tip: FingerTip
+    prop: PressedProp | None = None
+    touches: bool = False
     displacements: Array | None = None
     linear: Array | None = None
     drawn_contact: tuple[object, ...] = ()
@@ -77,15 +81,16 @@ class SeenBody:
             (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())
             for finger in snapshot.fingers
         )
-        remembered = snapshot.remembered_forces.tobytes()
-        contact = (self.shape.name, self.shape.ready, young_modulus, fingers, remembered)
+        besides = snapshot.remembered_forces.tobytes(), snapshot.borne_forces.tobytes()
+        contact = (self.shape.name, self.shape.ready, young_modulus, fingers, besides)
         fades = self.imprint.fades(yielding_of(thing, self.drawn.frame))
         if contact == self.drawn_contact and not fades:
             return
         self.drawn_contact = contact
+        self.touches = any(finger.touching for finger in snapshot.fingers)
         # A finger that was set down elsewhere is told by the last tick where it was before.
         is_past = snapshot.tick <= self._lifted_at
-        is_past &= not len(snapshot.remembered_nodes)
+        is_past &= not (len(snapshot.remembered_nodes) or len(snapshot.borne_nodes))
         self._loads = () if is_past else tuple(loads_of(self.drawn.body, snapshot))
         self._modulus = young_modulus
         if not self._loads:
@@ -112,8 +117,10 @@ class SeenBody:
 
     def stays(self, thing: bpy.types.Object) -> bool:
         """Whether there would be something to keep."""
+        if self.prop is not None and self.prop.has_moved(self.drawn):
+            return True
         if yielding_of(thing, self.drawn.frame).elastic:
-            return self.displacements is not None
+            return self.displacements is not None and (self.touches or self.prop is None)
         return self.imprint.is_left
 
     def keep(
@@ -121,6 +128,12 @@ class SeenBody:
     ) -> tuple[str, list[Say]]:
         """Keep the live layer; its name, empty where the object springs back, and remarks."""
         said = self._finish(thing, snapshot)
+        if self.prop is not None:
+            self.prop.leave(thing, self.drawn)
+            if not (self.touches or self.imprint.is_left):
+                # It has only been moved.
+                live_layer.remove(thing)
+                return "", said
         try:
             name = kept_imprint.keep(thing, scene, self.drawn.frame, self._left())
         except NothingStaysError as problem:
@@ -147,6 +160,8 @@ class SeenBody:
         if displacements is not None:
             tools = () if pressed is None else self.tip.pressing(pressed)
             moved = self.drawn.drawn_displacement(displacements, tools)
+        if self.prop is not None:
+            moved = self.prop.beyond_rest(self.drawn, moved)
         law, now = yielding_of(thing, self.drawn.frame), 0.0 if snapshot is None else snapshot.time
         live_layer.write(thing, self.imprint.seen(law, moved, now))
         patches = patches_in(pressed, self.tip.tool)

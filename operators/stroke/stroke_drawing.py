@@ -5,9 +5,9 @@ from __future__ import annotations
 import bpy
 
 from ..layer import live_layer
+from ..lying import rest_layer
+from ..lying.laid import place
 from ..object.drawn_body import DrawnBody
-from ..rest import rest_layer
-from ..rest.laid import place
 from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
 from .answer.stroked import Stroked

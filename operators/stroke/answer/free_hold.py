@@ -1,6 +1,4 @@
-"""Grab, Twist and pull of an object that nobody holds: a hand that takes hold of places, and carries
-it about.
-"""
+"""Grab, Twist and pull of an object that nobody holds: a hand holds it, and carries it about."""
 
 from __future__ import annotations
 
@@ -16,8 +14,8 @@ from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.grip import MOST_GRIPS
 from ....core.rest.grip import Grip as Hold
+from ...lying.free_body import FreeBody, Lying
 from ...object.drawn_body import DrawnBody
-from ...rest.free_body import FreeBody, Lying
 from .motion import Asked, Motion
 
 Array = NDArray[np.float64]
@@ -47,6 +45,7 @@ class FreeHold:
     starts: tuple[Array, ...]
     turn: Array
     free: FreeBody
+    springs_back = True
     refused = "The object does not come to rest so; let it go nearer to what bears it"
 
     @classmethod

@@ -5,18 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....core.contact.place import nearest_place
 from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
+from ...lying.free_body import FreeBody, Lying
 from ...object.drawn_body import DrawnBody
-from ...rest.free_body import FreeBody, Lying
 from .fingertips import Fingertips
 from .motion import Asked
 from .pushing import DEEPEST
 from .stroke import MOST_SQUEEZED
 from .thickness import Thickness
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +29,7 @@ class FreePush:
     tips: Fingertips
     rested: Lying
     free: FreeBody
+    springs_back = False
     refused = DEEPEST
 
     @classmethod
@@ -60,6 +64,11 @@ class FreePush:
     def parts(self, _asked: Asked) -> int:
         """In how many parts it goes in: a fingertip takes its time by itself."""
         return 1
+
+    @property
+    def wrench(self) -> tuple[Array, float]:
+        """Force of the first fingertip on the body, newton, and its torque about its normal."""
+        return -self.free.resting.tool_touches()[0].force, 0.0
 
     def _goal(self, grip: Grip, depth: float) -> Pose:
         """Pose in the world of a fingertip that has gone in from where the surface came to rest."""

@@ -1,4 +1,4 @@
-"""Strokes on an object that nobody holds: it gives way, is carried about, and comes to rest again."""
+"""Strokes on an object that nobody holds: it gives way, is carried, and comes to rest."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ....core.errors import PalpateError
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
+from ...lying.before import Before
+from ...lying.coming_down import refuse_played, show
+from ...lying.free_body import FreeBody, Lying, lie, supports_under
 from ...object.drawn_body import DrawnBody
-from ...rest.before import Before
-from ...rest.free_body import FreeBody, Lying, lie, supports_under
-from ...rest.settle import refuse_played, show
 from .free_hold import FreeHold
 from .free_push import FreePush
 from .motion import Asked, Motion
@@ -180,15 +180,14 @@ class FreeStroke:
 
 
 def _stroked(hand: FreePush | FreeHold, lying: Lying) -> Stroked:
-    is_held = isinstance(hand, FreeHold)
-    force, torque = hand.wrench if is_held else (lying.touches[0].force, 0.0)
+    force, torque = hand.wrench
     return Stroked(
         lying.displacements,
         float(np.linalg.norm(force)),
         torque,
         touches=lying.touches,
         lying=lying,
-        springs_back=is_held,
+        springs_back=hand.springs_back,
     )
 
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
+from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
-from ...rest.free_body import Lying
 from .motion import Asked, Motion
 from .pushing import Pushing
 from .stroked import Stroked

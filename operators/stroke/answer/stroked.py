@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ....core.contact.tool.tool_dent import PressingTool
 from ....core.contact.touches import ToolTouch
-from ...rest.free_body import Lying
+from ...lying.free_body import Lying
 
 
 @dataclass(frozen=True, eq=False)

@@ -154,7 +154,9 @@ def test_mirrored_hands_turn_nothing_and_stretch_it(free_cube):
     _, stroke, motion = begun_on(free_cube, SIDE, mirrored)
     outward = motion.Asked(motion.Motion.GRAB, by=np.array([0.003, 0.0, 0.0]))
     _, made = stroke.stroked(outward)
-    one, other = (np.sum([t.force for t in made.lying.rest.tools[k : k + 2]], axis=0) for k in (0, 2))
+    one, other = (
+        np.sum([t.force for t in made.lying.rest.tools[k : k + 2]], axis=0) for k in (0, 2)
+    )
     assert one[0] < -0.05
     np.testing.assert_allclose(one[0], -other[0], rtol=0.2)
 

@@ -15,7 +15,7 @@ use crate::python::device::haply::haply_setup;
 use crate::python::harness::stepping::Stepping;
 use crate::python::servo::counters::{fault_counters, link_counters};
 use crate::python::servo::settings::{Chosen, Given, options};
-use crate::python::servo::snapshot::Snapshot;
+use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::servo::paced::locked;
 use crate::servo::settings::Settings;
 
@@ -177,8 +177,7 @@ impl SteppedServo {
             py,
             locked(&self.stepped).ends.snapshots.read(),
             &[],
-            Vec::new(),
-            Vec::new(),
+            Loads::default(),
         )
     }
 

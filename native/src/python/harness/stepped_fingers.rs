@@ -15,7 +15,7 @@ use crate::python::body::surface::Body;
 use crate::python::harness::stepping::Stepping;
 use crate::python::rest::prop::Prop;
 use crate::python::servo::settings::{Chosen, Given};
-use crate::python::servo::snapshot::Snapshot;
+use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::python::tool::made::{GivenTool, made, tip};
 use crate::python::vectors::{Rows, Triple, Vector, finite, rotation as turn, vectors};
 use crate::servo::paced::locked;
@@ -252,9 +252,11 @@ impl SteppedFingers {
         // No tick goes on meanwhile: all of the same one.
         let patches = ends.patches.iter_mut();
         let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
-        let remembered = ends.remembered.read().nodes().to_vec();
-        let borne = ends.borne.read().nodes().to_vec();
-        Snapshot::of(py, ends.snapshots.read(), &patches, remembered, borne)
+        let loads = Loads {
+            remembered: ends.remembered.read().nodes().to_vec(),
+            borne: ends.borne.read().nodes().to_vec(),
+        };
+        Snapshot::of(py, ends.snapshots.read(), &patches, loads)
     }
 }
 

@@ -168,16 +168,21 @@ impl FingerSnapshot {
     }
 }
 
-/// Forces on nodes of the surface, N.
-type NodalForces = Vec<(u32, DVec3)>;
+/// Forces on nodes of the surface besides those of fingers, N.
+#[derive(Clone, Default)]
+pub struct Loads {
+    /// Under which the body would look as past forces have left it.
+    pub remembered: Vec<(u32, DVec3)>,
+    /// By what bears it.
+    pub borne: Vec<(u32, DVec3)>,
+}
 
 /// All fingers of a tick, and itself that of finger 0.
 #[pyclass(frozen, extends = FingerSnapshot, module = "palpate_servo")]
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
     placement: Placement,
-    remembered: NodalForces,
-    borne: NodalForces,
+    loads: Loads,
 }
 
 impl Snapshot {
@@ -185,8 +190,7 @@ impl Snapshot {
         py: Python<'_>,
         published: &Published,
         patches: &[PressedPatch],
-        remembered: NodalForces,
-        borne: NodalForces,
+        loads: Loads,
     ) -> PyResult<Py<Self>> {
         let reports = published.fingers().iter().enumerate();
         let fingers: Vec<_> = reports
@@ -199,8 +203,7 @@ impl Snapshot {
         let told = Self {
             fingers,
             placement: published.placement,
-            remembered,
-            borne,
+            loads,
         };
         Py::new(py, (told, first))
     }
@@ -235,32 +238,39 @@ impl Snapshot {
     }
     #[getter]
     fn remembered_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        PyArray1::from_iter(py, self.remembered.iter().map(|&(node, _)| i64::from(node)))
+        PyArray1::from_iter(
+            py,
+            self.loads
+                .remembered
+                .iter()
+                .map(|&(node, _)| i64::from(node)),
+        )
     }
     #[getter]
     fn remembered_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        table(py, self.remembered.iter().map(|&(_, force)| force))
+        table(py, self.loads.remembered.iter().map(|&(_, force)| force))
     }
     fn seen_from_body(&self, py: Python<'_>) -> PyResult<Py<Self>> {
         let fingers = self.fingers.iter();
         let fingers: Vec<_> = fingers.map(|one| one.seen_from(&self.placement)).collect();
         let first = fingers[0].clone();
-        let (remembered, borne) = (self.remembered.clone(), self.borne.clone());
         let told = Self {
             fingers,
             placement: self.placement,
-            remembered,
-            borne,
+            loads: self.loads.clone(),
         };
         Py::new(py, (told, first))
     }
     #[getter]
     fn borne_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        PyArray1::from_iter(py, self.borne.iter().map(|&(node, _)| i64::from(node)))
+        PyArray1::from_iter(
+            py,
+            self.loads.borne.iter().map(|&(node, _)| i64::from(node)),
+        )
     }
     #[getter]
     fn borne_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        table(py, self.borne.iter().map(|&(_, force)| force))
+        table(py, self.loads.borne.iter().map(|&(_, force)| force))
     }
     #[getter]
     fn fingers(&self) -> Vec<FingerSnapshot> {

@@ -19,7 +19,7 @@ use crate::python::servo::counters::{finger_counters, stage_counters, timing_cou
 use crate::python::servo::refusals::{NOT_WHOLE, check_kept};
 use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
-use crate::python::servo::snapshot::Snapshot;
+use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::python::servo::standing::Standing;
 use crate::python::tool::made::{GivenTool, MadeTool};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
@@ -178,21 +178,17 @@ impl Servo {
 
     fn snapshot(&self, py: Python<'_>) -> PyResult<Py<Snapshot>> {
         let Some(running) = self.current() else {
-            return Snapshot::of(
-                py,
-                &Published::before_the_start(1),
-                &[],
-                Vec::new(),
-                Vec::new(),
-            );
+            return Snapshot::of(py, &Published::before_the_start(1), &[], Loads::default());
         };
         let (published, patches) = running.published_with_patches();
         Snapshot::of(
             py,
             &published,
             &patches,
-            running.remembered(),
-            running.borne(),
+            Loads {
+                remembered: running.remembered(),
+                borne: running.borne(),
+            },
         )
     }
 

@@ -137,7 +137,7 @@ class FreeBody:
         moved = drawn.drawn_displacement(displacements, pressing)
         frame = frame_at(drawn.frame, rest.placement)
         return Lying(
-            frame, touches, displacements, _above(drawn, frame, moved, self.supports.floor), rest
+            frame, touches, displacements, above(drawn, frame, moved, self.supports.floor), rest
         )
 
 
@@ -232,7 +232,7 @@ def forget() -> None:
     _weighed = None
 
 
-def _above(
+def above(
     drawn: DrawnBody, frame: BodyFrame, moved: NDArray[np.float32], floor: float | None
 ) -> NDArray[np.float32]:
     """Displacements, none of which leads beneath a floor: between nodes a body may sag farther."""
