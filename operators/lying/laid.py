@@ -27,6 +27,11 @@ def lay(thing: bpy.types.Object, frame: BodyFrame, floor: float | None) -> None:
     rests on, metres, None without one.
     """
     remember(thing, floor)
+    move(thing, frame)
+
+
+def move(thing: bpy.types.Object, frame: BodyFrame) -> None:
+    """Move an object that was laid on to where a frame is: it is not moved by hand there."""
     place(thing, frame)
     thing.palpate.laid_to = np.array(thing.matrix_world).ravel()
 

@@ -16,7 +16,7 @@ from ..scene.body_frame import BodyFrame
 from .before import Before
 from .coming_down import refuse_played, show
 from .free_body import FreeBody, Lying, above, lie, supports_under
-from .laid import lay, place
+from .laid import lay, move
 from .placement import frame_at, placement_of
 
 # Share of its size by which an object that was pressed has moved: less is the servo's rounding.
@@ -101,7 +101,7 @@ class PressedProp:
             return drawn
         position, rotation = snapshot.placement
         frame = frame_at(drawn.frame, Pose(np.asarray(position), np.asarray(rotation)))
-        place(thing, frame)
+        move(thing, frame)
         return replace(drawn, frame=frame)
 
     def has_moved(self, drawn: DrawnBody) -> bool:

@@ -6,7 +6,7 @@ import bpy
 
 from ..layer import live_layer
 from ..lying import rest_layer
-from ..lying.laid import place
+from ..lying.laid import move
 from ..object.drawn_body import DrawnBody
 from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
@@ -22,5 +22,5 @@ def draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
     else:
         moved = lying.moved
         live_layer.write(thing, moved - rest_layer.shown(thing, len(moved) // 3))
-        place(thing, lying.frame)
+        move(thing, lying.frame)
     layer_traction.write(thing, tractions_of(thing, drawn, moved, patches_of(stroked.touches)))

@@ -71,6 +71,16 @@ def test_a_push_from_the_side_moves_it_along(free_cube):
     assert abs(free_cube.location.y) < 2e-3
 
 
+def test_reset_brings_it_back_to_before_all_strokes(free_cube):
+    free_cube.palpate.rest_friction = 0.1
+    before = np.array(free_cube.matrix_world)
+    for place in ((0.025, 0.0, 0.0), (0.01, 0.0, 0.0)):
+        push(free_cube, 0.015, place=place)
+        assert free_cube.location.x < -0.005
+    bpy.ops.palpate.reset_rest()
+    np.testing.assert_allclose(np.array(free_cube.matrix_world), before, atol=1e-6)
+
+
 def test_the_next_push_begins_where_the_object_is_then(free_cube):
     push(free_cube, 0.003)
     push(free_cube, 0.003, place=(-0.008, 0.0, 0.025))

@@ -1,0 +1,159 @@
+"""Presses of objects that nobody holds, through the servo, by the events that the modal side posts."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import pytest
+from soft_scene import begin, empty, layer_names, mesh_state, part, seen_places, wait
+
+RADIUS = 0.012
+# Outside, over the top and beside the cube of 50 mm that stands around the origin.
+OVER, BESIDE = (0.004, 0.002, 0.0385), (0.0385, 0.0, 0.0)
+
+
+@pytest.fixture
+def tip(free_cube):
+    chosen = bpy.context.scene.palpate
+    chosen.tip, chosen.own_sizes, chosen.tip_radius = "SPHERE", True, RADIUS
+    return chosen
+
+
+def state(thing):
+    return mesh_state(thing), np.array(thing.matrix_world).tolist(), thing.palpate.is_laid
+
+
+def lead(session, states, start, by):
+    """Set the finger down and lead it by a way, and wait until all is at rest."""
+    session.post(states.SetDown(start, 0))
+    session.tick()
+    end = tuple(np.add(start, by))
+    session.post(states.Move(end, 0))
+    at_rest(session, end)
+
+
+def at_rest(session, end):
+    before = []
+
+    def is_quiet():
+        place, _ = session.loop.servo.snapshot().placement
+        finger = session.loop.servo.snapshot().fingers[0]
+        before.append(np.concatenate([place, finger.contact_force]))
+        arrived = np.allclose(finger.probe, end, atol=1e-6)
+        return arrived and len(before) > 20 and np.ptp(before[-20:], axis=0).max() < 1e-5
+
+    wait(session, is_quiet)
+
+
+def lowest(thing):
+    bpy.context.view_layer.update()
+    matrix = np.array(thing.matrix_world)
+    return (seen_places(thing) @ matrix[:3, :3].T + matrix[:3, 3])[:, 2].min()
+
+
+def test_a_press_from_above_feels_the_floor_and_is_given_back(free_cube, tip, sessions, states):
+    before = state(free_cube)
+    session = begin(sessions, states, free_cube)
+    lead(session, states, OVER, (0.0, 0.0, -0.006))
+    felt = session.snapshot.fingers[0]
+    rest, tools = part("core.rest.resting"), part("core.contact.tool.tools")
+    pose, support = part("core.contact.tool.pose").Pose, part("core.rest.support")
+    body, place = session.drawn.body, np.array(OVER)
+    alone = rest.Resting(
+        body,
+        [support.Floor(-0.025, 0.5)],
+        [(tools.sphere(RADIUS), pose(place, np.eye(3)))],
+        settings=rest.RestSettings(free_cube.palpate.young_modulus, 0.5),
+    )
+    alone.settle()
+    alone.lead([pose(place - (0.0, 0.0, 0.006), np.eye(3))])
+    expected = alone.settle().tools[0].force
+    force = session.frames[0].turn_to_world(felt.contact_force)
+    assert force[2] == pytest.approx(expected[2], rel=0.03)
+    # What is seen is the body as it is borne: pressed in above, and not through the floor.
+    assert abs(lowest(free_cube) + 0.025) < 2e-4
+    figures = part("addon.overlay.reading").readings(session)[0]
+    assert figures.touching
+    assert np.allclose(figures.probe, place - (0.0, 0.0, 0.006), atol=1e-4)
+    session.post(states.Moment.CANCEL)
+    assert state(free_cube) == before
+
+
+def test_a_press_from_the_side_takes_it_along_and_enter_keeps_it_there(
+    free_cube, tip, sessions, states
+):
+    free_cube.palpate.rest_friction = 0.1
+    session = begin(sessions, states, free_cube)
+    lead(session, states, BESIDE, (-0.02, 0.0, 0.0))
+    assert -0.022 < free_cube.location.x < -0.01
+    # Its hand is in the world: the object has moved, the finger is where it was led.
+    assert np.allclose(session.hands[0].origin, 0.0)
+    session.post(states.Keep(session.seen.stays(free_cube)))
+    assert session.kept
+    assert session.kept_name == "Press 1"
+    assert layer_names(free_cube) == ["Rests", "Press 1"]
+    assert -0.022 < free_cube.location.x < -0.01
+    bpy.ops.palpate.reset_rest()
+    assert np.allclose(free_cube.location, 0.0)
+
+
+def test_an_empty_that_leaves_it_has_only_moved_it(free_cube, tip, sessions, states):
+    free_cube.palpate.rest_friction = 0.1
+    finger = empty("Finger", BESIDE)
+    bpy.context.scene.palpate.source_empty = finger
+    session = begin(sessions, states, free_cube, "EMPTY")
+    for x in np.linspace(BESIDE[0], 0.02, 8):
+        finger.location.x = x
+        bpy.context.view_layer.update()
+        session.tick()
+        at_rest(session, tuple(finger.matrix_world.translation))
+    finger.location.x = 0.1
+    bpy.context.view_layer.update()
+    session.tick()
+    at_rest(session, tuple(finger.matrix_world.translation))
+    session.tick()
+    assert session.seen.stays(free_cube)
+    session.post(states.Keep(True))
+    assert session.kept
+    assert layer_names(free_cube) == ["Rests"]
+    assert free_cube.location.x < -0.01
+
+
+def test_a_simulated_device_presses_it_where_it_lies(free_cube, tip, sessions, states):
+    free_cube.location = (0.3, 0.1, 0.2)
+    bpy.context.view_layer.update()
+    tip.source = "SIMULATED"
+    session = begin(sessions, states, free_cube, "DEVICE")
+    wait(session, lambda: session.snapshot is not None and session.snapshot.touching)
+    wait(session, lambda: session.snapshot.output_force[2] > 0.05)
+    np.testing.assert_allclose(np.array(free_cube.location)[:2], (0.3, 0.1), atol=0.02)
+    session.post(states.Moment.CANCEL)
+    np.testing.assert_allclose(free_cube.location, (0.3, 0.1, 0.2), atol=1e-7)
+
+
+def test_a_file_is_saved_with_the_object_as_it_was(free_cube, tip, sessions, states):
+    before = state(free_cube)
+    session = begin(sessions, states, free_cube)
+    lead(session, states, OVER, (0.0, 0.0, -0.004))
+    session.post(states.Moment.SAVE_BEGINS)
+    session.tick()
+    assert state(free_cube) == before
+    session.post(states.Moment.SAVE_ENDS)
+    session.tick()
+    assert free_cube.palpate.is_laid
+    session.post(states.Moment.CANCEL)
+    assert state(free_cube) == before
+
+
+def test_a_recording_of_it_is_one_in_the_world(free_cube, tip, sessions, states):
+    bpy.context.scene.palpate.record_from_start = True
+    session = begin(sessions, states, free_cube)
+    lead(session, states, OVER, (0.0, 0.0, -0.004))
+    session.post(states.Moment.CANCEL)
+    free_cube.location.x = 1.0
+    bpy.context.view_layer.update()
+    bpy.ops.palpate.animate_recording()
+    probe = bpy.data.objects["Palpate Probe"]
+    bpy.context.scene.frame_set(bpy.context.scene.frame_end)
+    assert probe.parent is None
+    np.testing.assert_allclose(probe.matrix_world.translation[:2], OVER[:2], atol=1e-4)
