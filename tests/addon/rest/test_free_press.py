@@ -1,4 +1,4 @@
-"""Presses of objects that nobody holds, through the servo, by the events that the modal side posts."""
+"""Presses of objects that nobody holds, through the servo, by the events of the modal side."""
 
 from __future__ import annotations
 
