@@ -580,6 +580,9 @@ class Resting:
     def time(self) -> float:
         """Of all ticks, s."""
 
+    def laid(self) -> Prop:
+        """The body with its supports as they are now, for a servo that goes on from here."""
+
     def place(self, position: _Vector, rotation: _Matrix) -> None:
         """Lay the body elsewhere; all that touches it is set down anew."""
 

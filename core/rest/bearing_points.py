@@ -52,8 +52,12 @@ def bearing_points(body: SoftBody, spacing: float | None = None) -> Touchable:
 
 def even_points(body: SoftBody, spacing: float | None = None) -> Touchable:
     """The same, alike everywhere: few enough for a tick of 1 kHz unless ``spacing`` is told."""
-    usual = FARTHEST * float(np.sqrt(surface_area(body.mesh)))
-    return bearing_points(body, usual if spacing is None else spacing)
+    return bearing_points(body, even_spacing(body) if spacing is None else spacing)
+
+
+def even_spacing(body: SoftBody) -> float:
+    """How far apart points are of which a tick of 1 kHz has time for all, metres."""
+    return FARTHEST * float(np.sqrt(surface_area(body.mesh)))
 
 
 def pressing_points(body: SoftBody, tool: Tool, spacing: float | None = None) -> Touchable:

@@ -27,7 +27,7 @@ from .support import Floor, Support, friction_checked
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
-    from palpate_servo import LaidPoint, LaidTool, RestTouch, SettledTool
+    from palpate_servo import LaidPoint, LaidTool, Prop, RestTouch, SettledTool
 
 
 class Resting:
@@ -75,7 +75,7 @@ class Resting:
         friction_checked(settings.friction)
         self.body = body
         self.young_modulus = body.modulus(settings.young_modulus)
-        native = native_body(body, whole=True, may_move=True)
+        native = self.native_body = native_body(body, whole=True, may_move=True)
         prop = native_prop(
             body, native, supports, placement, settings, bearing_points(body, settings.spacing)
         )
@@ -95,6 +95,10 @@ class Resting:
         except ValueError as problem:
             raise PalpateError("rest: {problem}", problem=problem) from problem
         self._tools = tuple(tool for tool, _ in tools)
+
+    def laid(self) -> Prop:
+        """The body as it lies now, for a servo on its ``native_body`` that goes on from here."""
+        return self._native.laid()
 
     def place(self, placement: Pose) -> None:
         """Lay the body elsewhere; its contacts are found anew."""

@@ -15,6 +15,7 @@ from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
+from ...core.rest.bearing_points import even_spacing
 from ...core.rest.grip import Grip
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
@@ -147,8 +148,11 @@ def lie(
     supports: Supports,
     tools: Sequence[tuple[Tool | Grip, Pose]] = (),
     placement: Pose | None = None,
+    *,
+    for_servo: bool = False,
 ) -> FreeBody:
-    """A free body where its object is, or at a ``placement``; poses of tools are in the world.
+    """A free body where its object is, or at a ``placement``; poses of tools are in the world. One
+    ``for_servo`` is touched at no more points than the servo has time for.
 
     Raises
     ------
@@ -157,11 +161,15 @@ def lie(
     """
     chosen, scene = thing.palpate, bpy.context.scene
     x, y, z = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+    body = _at_density(drawn.body, chosen.density)
     settings = RestSettings(
-        young_modulus=chosen.young_modulus, friction=chosen.static_friction, gravity=(x, y, z)
+        young_modulus=chosen.young_modulus,
+        friction=chosen.static_friction,
+        gravity=(x, y, z),
+        spacing=even_spacing(body) if for_servo else None,
     )
     resting = Resting(
-        _at_density(drawn.body, chosen.density),
+        body,
         supports.all,
         tools,
         placement=placement or placement_of(drawn.frame),

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import Pose
-from ...core.rest.prop import native_prop
 from ...core.servo.session import Body, Prop, Snapshot
 from ..object.drawn_body import DrawnBody
 from ..scene.body_frame import BodyFrame
@@ -52,7 +51,7 @@ class PressedProp:
             return None
         refuse_played(thing)
         graph = bpy.context.evaluated_depsgraph_get()
-        alone = lie(thing, drawn, supports_under(thing, drawn, graph))
+        alone = lie(thing, drawn, supports_under(thing, drawn, graph), for_servo=True)
         rested = alone.come_down()
         drawn = replace(drawn, body=alone.resting.body, frame=rested.frame)
         return cls(drawn, alone, rested, Before.of(thing))
@@ -72,16 +71,11 @@ class PressedProp:
         """How far from its surface at rest it may be where it rests, metres."""
         return 2.0 * float(np.linalg.norm(self._rested.displacements, axis=1).max())
 
-    def native(self, body: Body) -> Prop:
-        """The body laid down for the servo, which has it as ``body``.
-
-        Raises
-        ------
-        PalpateError
-            Too many colliders.
-        """
-        alone = self._alone
-        return native_prop(self.drawn.body, body, alone.supports.all, self.start, alone.settings)
+    @property
+    def native(self) -> tuple[Body, Prop]:
+        """The body as the servo has it, and as it is laid down there."""
+        resting = self._alone.resting
+        return resting.native_body, resting.laid()
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Move the object to where it came to rest."""

@@ -81,11 +81,14 @@ class ForceLoop:
         PalpateError
             A body that cannot be touched, or a setting that the servo refuses.
         """
-        moves, gives_way = prop is not None, bool(settings.servo.relaxation)
-        is_whole = moves or fingers > 1 or tip.tool is not None or gives_way
-        touched = native_body(drawn.body, whole=is_whole, may_move=moves)
-        laid = None if prop is None else prop.native(touched)
+        if prop is None:
+            gives_way = bool(settings.servo.relaxation)
+            is_whole = fingers > 1 or tip.tool is not None or gives_way
+            touched, laid = native_body(drawn.body, whole=is_whole), None
+        else:
+            touched, laid = prop.native
         servo = servo_on(touched, settings.servo, rate_hz=rate_hz, prop=laid)
+        moves = prop is not None
         recorder = Recorder(servo, rate_hz, in_world=moves)
         return cls(servo, settings, recorder, drawn, touched, tip, prop)
 

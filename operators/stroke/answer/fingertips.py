@@ -11,6 +11,7 @@ from ....core.contact.tool.pose import Pose, facing, resting_on
 from ....core.contact.tool.tool_surface import surface_and_correction
 from ....core.contact.tool.tools import Tool, sphere
 from ....core.grip.patch import Grip
+from ....core.rest.bearing_points import pressing_points
 from ...object.drawn_body import DrawnBody
 from .grips import grip_at
 from .motion import Asked
@@ -47,8 +48,9 @@ class Fingertips:
         PalpateError
             They are too small for the body.
         """
-        tool = sphere(grips[0].radius)
-        return cls(drawn, grips, tool, surface_and_correction(drawn.body, tool)[0].positions)
+        tool, body = sphere(grips[0].radius), drawn.body
+        touched = pressing_points if body.is_free else surface_and_correction
+        return cls(drawn, grips, tool, touched(body, tool)[0].positions)
 
     @property
     def reach(self) -> bool:

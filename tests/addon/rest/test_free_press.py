@@ -119,6 +119,18 @@ def test_an_empty_that_leaves_it_has_only_moved_it(free_cube, tip, sessions, sta
     assert free_cube.location.x < -0.01
 
 
+def test_a_press_on_a_board_feels_the_board(free_cube, board, tip, sessions, states):
+    board((0.0, 0.0, -0.03))
+    free_cube.palpate.floor = "NONE"
+    session = begin(sessions, states, free_cube)
+    wait(session, lambda: session.snapshot.tick > 500)
+    placed = np.array(free_cube.matrix_world)
+    assert abs(lowest(free_cube) + 0.03) < 3e-4
+    lead(session, states, OVER, (0.0, 0.0, -0.008))
+    assert session.snapshot.fingers[0].touching
+    np.testing.assert_allclose(np.array(free_cube.matrix_world)[:3, 3], placed[:3, 3], atol=2e-3)
+
+
 def test_a_simulated_device_presses_it_where_it_lies(free_cube, tip, sessions, states):
     free_cube.location = (0.3, 0.1, 0.2)
     bpy.context.view_layer.update()

@@ -64,6 +64,12 @@ impl Resting {
         self.inner.time()
     }
 
+    fn laid(&self) -> Prop {
+        Prop {
+            inner: self.inner.prop.clone(),
+        }
+    }
+
     fn place(&mut self, position: Triple, rotation: Rows) -> PyResult<()> {
         let pose = pose(position, rotation)?;
         self.inner.place(placed(&pose));
