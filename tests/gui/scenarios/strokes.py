@@ -8,6 +8,7 @@ import bmesh
 import bpy
 import numpy as np
 from bl_keymap_utils import keymap_hierarchy
+from free_cube import free_default_cube, layer_names, lowest, placed
 from mouse_scene import open_mouse, type_key
 from random_drags import Drag, random_drags
 from stage import Stage, Wait, at_length
@@ -235,12 +236,12 @@ def _random_drags_on_bodies(stage: Stage, scale: float) -> Wait:
 
 
 def an_object_without_pins_settles_is_pushed_along_and_given_back(stage: Stage) -> Wait:
-    yield from _free_default_cube(stage)
-    before = _placed()
+    yield from free_default_cube(stage)
+    before = placed()
     with stage.view():
         bpy.ops.palpate.settle("INVOKE_DEFAULT", True)
-    yield from stage.until(lambda: _layers() == ["Rests"], "the object at rest")
-    settled = _placed()
+    yield from stage.until(lambda: layer_names() == ["Rests"], "the object at rest")
+    settled = placed()
     assert 0.05 < before[2, 3] - settled[2, 3] < 0.3
     yield from stage.picture("settled")
     with stage.view():
@@ -250,23 +251,59 @@ def an_object_without_pins_settles_is_pushed_along_and_given_back(stage: Stage) 
     drag = [here, (here[0] + 80, here[1])]
     yield from stage.drag(drag, release=False)
     yield from stage.picture("pushed")
-    assert np.abs(_placed() - settled).max() > 1e-3
+    assert np.abs(placed() - settled).max() > 1e-3
     yield from stage.key("ESC")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from stage.until(lambda: _layers() == ["Rests"], "the object given back")
-    np.testing.assert_allclose(_placed(), settled, rtol=0, atol=1e-5)
+    yield from stage.until(lambda: layer_names() == ["Rests"], "the object given back")
+    np.testing.assert_allclose(placed(), settled, rtol=0, atol=1e-5)
     yield from stage.drag(drag, release=False)
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
-    yield from stage.until(lambda: "Press 1" in _layers(), "the stroke that is kept")
+    yield from stage.until(lambda: "Press 1" in layer_names(), "the stroke that is kept")
     yield from stage.picture("kept")
-    assert np.abs(_placed() - settled).max() > 1e-3
+    assert np.abs(placed() - settled).max() > 1e-3
     yield from type_key(stage, "Z", ctrl=True)
-    yield from stage.until(lambda: _layers() == ["Rests"], "the undo of the stroke")
-    np.testing.assert_allclose(_placed(), settled, rtol=0, atol=1e-5)
+    yield from stage.until(lambda: layer_names() == ["Rests"], "the undo of the stroke")
+    np.testing.assert_allclose(placed(), settled, rtol=0, atol=1e-5)
+    yield from _carried_about(stage, settled)
+    yield from _pressed_aside(stage, settled)
     with stage.view():
         bpy.ops.palpate.reset_rest()
-    yield from stage.until(lambda: _layers() == [], "the object as it was")
-    np.testing.assert_allclose(_placed(), before, rtol=0, atol=1e-6)
+    yield from stage.until(lambda: layer_names() == [], "the object as it was")
+    np.testing.assert_allclose(placed(), before, rtol=0, atol=1e-6)
+
+
+def _carried_about(stage: Stage, settled: np.ndarray) -> Wait:
+    """It is grabbed by its side, lifted off the floor, and comes down beside where it was."""
+    bpy.context.scene.palpate.stroke = "GRAB"
+    here = stage.pixel((0.3, -1.0, 1.2))
+    yield from stage.drag([here, (here[0] + 60, here[1] + 90)], release=False)
+    yield from stage.until(lambda: lowest() > 0.1, "the object in the air")
+    yield from stage.picture("carried")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.until(lambda: layer_names() == ["Rests"], "the object let go")
+    yield from stage.picture("let-go")
+    assert abs(lowest()) < 0.02
+    assert np.linalg.norm((placed() - settled)[:2, 3]) > 0.1
+    yield from type_key(stage, "Z", ctrl=True)
+    yield from stage.until(
+        lambda: np.allclose(placed(), settled, rtol=0, atol=1e-5), "the undo of the grab"
+    )
+
+
+def _pressed_aside(stage: Stage, settled: np.ndarray) -> Wait:
+    """A press takes it along; Escape gives it back."""
+    bpy.context.scene.palpate.tip = "SPHERE"
+    with stage.view():
+        bpy.ops.palpate.press("INVOKE_DEFAULT", True)
+    yield 0.3
+    here = stage.pixel((0.2, -1.0, 0.8))
+    yield from stage.drag([here, (here[0], here[1] + 60)], release=False)
+    yield from stage.until(lambda: np.abs(placed() - settled).max() > 0.02, "the object aside")
+    yield from stage.picture("pressed")
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from stage.key("ESC")
+    yield from stage.until(lambda: layer_names() == ["Rests"], "the object given back")
+    np.testing.assert_allclose(placed(), settled, rtol=0, atol=1e-5)
 
 
 def _settled(stage: Stage) -> Wait:
@@ -334,41 +371,3 @@ def last_stroke(thing: bpy.types.Object) -> np.ndarray:
     moved = layers.displacement(thing, thing.modifiers[kept(thing)[-1]])
     assert moved is not None
     return moved
-
-
-def _free_default_cube(stage: Stage) -> Wait:
-    """The factory scene's cube, with vertices to dent, a little over the ground, without pins."""
-    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=False)
-    yield 0.3
-    cube = _default_cube()
-    mesh = bmesh.new()
-    mesh.from_mesh(cube.data)
-    bmesh.ops.subdivide_edges(mesh, edges=mesh.edges[:], cuts=15, use_grid_fill=True)
-    mesh.to_mesh(cube.data)
-    mesh.free()
-    cube.location.z = 1.1
-    settings = cube.palpate
-    # Two metres of plush would sink into a heap.
-    settings.young_modulus, settings.density, settings.pin_mode = 1e5, 100.0, "NONE"
-    settings.edge_length = 0.12
-    bpy.context.scene.palpate.tip_radius = 0.3
-    with stage.view():
-        bpy.context.view_layer.objects.active = cube
-        bpy.ops.palpate.make_soft("EXEC_DEFAULT")
-    yield from stage.open_sidebar("Palpate")
-    yield 0.5
-    bpy.ops.ed.undo_push(message="Free cube")
-    yield
-
-
-def _default_cube() -> bpy.types.Object:
-    return bpy.data.objects["Cube"]
-
-
-def _placed() -> np.ndarray:
-    bpy.context.view_layer.update()
-    return np.array(_default_cube().matrix_world)
-
-
-def _layers() -> list[str]:
-    return [layer.name for layer in layers.layers_of(_default_cube())]
