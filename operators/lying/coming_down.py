@@ -8,7 +8,7 @@ from ...core.errors import PalpateError
 from ..object.drawn_body import open_body
 from ..played import mesh_cache
 from . import rest_layer
-from .free_body import Lying, lie, supports_under
+from .free_body import FreeBody, Lying, lie, supports_under
 from .laid import is_animated, lay
 
 
@@ -20,12 +20,23 @@ def settle(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> Lying:
     PalpateError
         It is pinned or cannot move by itself, nothing bears it, or it does not come to rest.
     """
+    free = begun(thing, graph)
+    lying = free.come_down()
+    show(thing, lying, free.supports.floor)
+    return lying
+
+
+def begun(thing: bpy.types.Object, graph: bpy.types.Depsgraph) -> FreeBody:
+    """The free body of an object where it is, among what it rests on.
+
+    Raises
+    ------
+    PalpateError
+        It is pinned or cannot move by itself, or nothing bears it.
+    """
     refuse_played(thing)
     drawn = open_body(thing, graph.scene)
-    supports = supports_under(thing, drawn, graph)
-    lying = lie(thing, drawn, supports).come_down()
-    show(thing, lying, supports.floor)
-    return lying
+    return lie(thing, drawn, supports_under(thing, drawn, graph))
 
 
 def show(thing: bpy.types.Object, lying: Lying, floor: float | None) -> None:

@@ -117,15 +117,20 @@ class FreeBody:
         PalpateError
             It does not.
         """
+        self.drop(LANDING * self.drawn.size)
+        return self.settle()
+
+    def drop(self, height: float) -> None:
+        """Leave out a long way down to a ``height``, metres, over what bears it: nothing happens
+        there, and it would take as long as the way is.
+        """
         placement = self.resting.rest.placement
         x, y, z = self.settings.gravity
         nodes = placement.to_world(self.drawn.surface_nodes)
         gap = self.supports.gap_beneath(nodes) if x == y == 0.0 and z < 0.0 else 0.0
-        if self.drawn.size < gap < np.inf:
-            # Nothing happens on the way, and it would take as long as the way is.
-            down = np.array([0.0, 0.0, LANDING * self.drawn.size - gap])
+        if max(self.drawn.size, height) < gap < np.inf:
+            down = np.array([0.0, 0.0, height - gap])
             self.resting.place(replace(placement, position=placement.position + down))
-        return self.settle()
 
     def now(self, bent: Array | None = None) -> Lying:
         """Where it is now; ``bent`` (n, 3) displaces its free surface nodes besides, metres."""

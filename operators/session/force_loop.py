@@ -87,8 +87,9 @@ class ForceLoop:
             touched, laid = native_body(drawn.body, whole=is_whole), None
         else:
             touched, laid = prop.native
-        servo = servo_on(touched, settings.servo, rate_hz=rate_hz, prop=laid)
         moves = prop is not None
+        begun = replace(settings.servo, relaxation=()) if moves else settings.servo
+        servo = servo_on(touched, begun, rate_hz=rate_hz, prop=laid)
         recorder = Recorder(servo, rate_hz, in_world=moves)
         return cls(servo, settings, recorder, drawn, touched, tip, prop)
 
@@ -202,7 +203,11 @@ class ForceLoop:
 
     def _set(self) -> None:
         turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
-        self.servo.set(replace(self.settings.servo, enabled=self._enabled, orientations=turns))
+        chosen = self.settings.servo
+        if self.prop is not None:
+            # Nobody has tried how one that moves gives way with time.
+            chosen = replace(chosen, relaxation=())
+        self.servo.set(replace(chosen, enabled=self._enabled, orientations=turns))
 
     def carry_out(self, effect: SetDown | Move | SwitchForce) -> None:
         """Carry out an effect on the servo."""

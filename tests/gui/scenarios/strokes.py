@@ -240,7 +240,15 @@ def an_object_without_pins_settles_is_pushed_along_and_given_back(stage: Stage) 
     before = placed()
     with stage.view():
         bpy.ops.palpate.settle("INVOKE_DEFAULT", True)
-    yield from stage.until(lambda: layer_names() == ["Rests"], "the object at rest")
+    yield from stage.until(lambda: 0.02 < before[2, 3] - placed()[2, 3] < 0.05, "its fall")
+    yield from stage.picture("falls")
+    yield from stage.key("ESC")
+    yield from stage.until(lambda: layer_names() == [], "the object given back")
+    np.testing.assert_allclose(placed(), before, rtol=0, atol=1e-6)
+    with stage.view():
+        bpy.ops.palpate.settle("INVOKE_DEFAULT", True)
+    yield from stage.until(lambda: not stage.window.modal_operators, "the object at rest")
+    assert layer_names() == ["Rests"]
     settled = placed()
     assert 0.05 < before[2, 3] - settled[2, 3] < 0.3
     yield from stage.picture("settled")

@@ -1,13 +1,20 @@
 """A body that nobody holds, in the servo: forces and places as of ``Resting``, in any frame."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from bodies.laid import TIP
+from bodies.laid import DOWN, TIP
+from palpate_servo.harness import SteppedFingers
 from scipy.spatial.transform import Rotation
 
 from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import plate
 from palpate.core.rest.grip import Grip
 from palpate.core.rest.resting import Resting
+from palpate.core.rest.support import Support
+from palpate.core.servo.session import displacements_of
+from palpate.core.servo.settings import Settings
 
 DEPTH = 0.004
 ON_TOP = {"tool": np.array([0.03, 0.027, 0.0605]), "point": np.array([0.03, 0.027, 0.0505])}
@@ -100,3 +107,62 @@ def test_the_surface_of_a_point_is_where_the_finger_is(laid):
     assert shot.touching
     # Along its push exactly; aside the surface slides, for it has no friction.
     assert np.abs(shot.surface_point - shot.probe)[2] < 2e-5
+
+
+def test_what_bears_it_is_told_and_carries_its_weight(laid):
+    start = ON_TOP["tool"]
+    servo = laid.servo(start, tip=TIP)
+    servo.follow(press(start, rest=2500)[:, None])
+    shot = servo.snapshot()
+    _, rotation = shot.placement
+    borne = rotation @ shot.borne_forces.sum(axis=0)
+    pressed = -shot.fingers[0].contact_force
+    weight = laid.body.mass * np.array(laid.settings().gravity)
+    np.testing.assert_allclose(borne + pressed + weight, 0.0, atol=1e-6 * np.linalg.norm(weight))
+    # Under these forces and the finger's it looks as one without a clock.
+    resting = Resting(laid.body, laid.corner(), [(TIP, Pose.at(start))], settings=laid.settings())
+    resting.settle()
+    resting.lead([Pose.at(start - [0.0, 0.0, DEPTH])])
+    expected = resting.settle().displacements()
+    seen = displacements_of(laid.body, shot)
+    np.testing.assert_allclose(seen, expected, rtol=0, atol=1e-5 * np.abs(expected).max())
+
+
+def test_a_tick_is_seen_from_the_body_in_its_own_axes(laid):
+    turn = Rotation.from_rotvec([0.3, -0.2, 0.5])
+    start = ON_TOP["tool"]
+    servo = laid.servo(start, tip=TIP, turn=turn)
+    servo.follow(turn.apply(press(start, rest=500))[:, None])
+    shot = servo.snapshot()
+    own = shot.seen_from_body()
+    position, rotation = shot.placement
+    np.testing.assert_allclose(rotation @ own.probe + position, shot.probe, atol=1e-12)
+    np.testing.assert_allclose(rotation @ own.contact_force, shot.contact_force, atol=1e-12)
+    np.testing.assert_allclose(
+        own.fingers[0].points @ rotation.T + position, shot.fingers[0].points, atol=1e-12
+    )
+    np.testing.assert_array_equal(own.nodal_forces, shot.nodal_forces)
+    assert own.tick == shot.tick
+
+
+def test_a_body_at_rest_on_a_plate_goes_on_from_there(laid):
+    """Its rest shape overlaps the plate by how far it sags, not felt when set down anew."""
+    turn = Rotation.from_rotvec([np.pi, 0.0, 0.0]).as_matrix()
+    under = Support(plate(0.2, 0.2), Pose.at([0.025, 0.025, 0.0], turn), friction=0.5)
+    settings = replace(laid.settings(gravity=DOWN), friction=0.5)
+    resting = Resting(laid.body, [under], placement=Pose.at([0.0, 0.0, 1e-4]), settings=settings)
+    before = resting.settle().placement
+    assert before.position[2] < -1e-6
+    start = np.array([0.3, 0.0, 0.1])
+    servo = SteppedFingers(
+        resting.native_body,
+        start[None],
+        Settings(laid.body.young_modulus),
+        prop=resting.laid(),
+        max_force=None,
+    )
+    servo.follow(np.repeat(start[None], 300, 0)[:, None])
+    shot = servo.snapshot()
+    np.testing.assert_allclose(shot.placement[0], before.position, atol=5e-5)
+    weight = laid.body.mass * 9.81
+    assert shot.borne_forces.sum(axis=0)[2] == pytest.approx(weight, rel=1e-3)
