@@ -548,6 +548,85 @@ class Prop:
         is not whole, and numbers that cannot be.
         """
 
+class PileContacts(TypedDict):
+    """Contacts of a pile that press, an entry of each array for one of them."""
+
+    body: NDArray[np.int64]
+    """Number of the body whose contact point it is."""
+    point: NDArray[np.int64]
+    """Number of that contact point."""
+    obstacle: NDArray[np.int64]
+    """Number of the rigid tool that it meets; -1 for another body."""
+    other: NDArray[np.int64]
+    """Number of the other body that it meets; -1 for a rigid tool."""
+    push: NDArray[np.float64]
+    """Normal force, N."""
+    force: NDArray[np.float64]
+    """On the point's body, (c, 3), N, in the world."""
+    place: NDArray[np.float64]
+    """Where the point is, (c, 3), m, in the world."""
+    shared_contact: NDArray[np.int64]
+    """Contacts with another body, one entry for each of its points that carries a share."""
+    shared_point: NDArray[np.int64]
+    """That point."""
+    share: NDArray[np.float64]
+    """Its share."""
+
+FreeMember: TypeAlias = tuple[float, _Vector, _Matrix, float]
+"""Mass, centre of mass, moments of inertia about it, drag time."""
+Member: TypeAlias = tuple[ToolSurface, float, FreeMember | None, _Vector, _Matrix]
+"""A body of a pile: contact points, Young's modulus, how it moves if it does, its placement."""
+RigidTool: TypeAlias = tuple[Tool, _Vector, _Matrix, float]
+"""A tool, its pose in the world, the coefficient of friction."""
+
+@final
+class Pile:
+    """Soft bodies that press each other and rigid tools, without a clock."""
+
+    def __init__(
+        self,
+        bodies: Sequence[Member],
+        obstacles: Sequence[RigidTool],
+        *,
+        gravity: _Vector,
+        friction: float,
+    ) -> None:
+        """Begin with bodies where they are; ``friction`` is that between them.
+
+        Raises ValueError for numbers that cannot be.
+        """
+
+    @property
+    def time(self) -> float:
+        """Of all ticks, s."""
+
+    def position(self, body: int) -> NDArray[np.float64]:
+        """Of a body's frame in the world, (3,), m."""
+
+    def rotation(self, body: int) -> NDArray[np.float64]:
+        """Takes directions of a body to those of the world, (3, 3)."""
+
+    def elastic(self, body: int) -> float:
+        """The elastic energy in a body, J."""
+
+    def contacts(self) -> PileContacts:
+        """All contacts that press."""
+
+    def lead(self, obstacle: int, position: _Vector, rotation: _Matrix) -> None:
+        """Where a rigid tool goes from the next tick on, by a stride in each."""
+
+    def tick(self, dt: float) -> None:
+        """Go on by dt s.
+
+        Raises RuntimeError where a force is no number.
+        """
+
+    def settle(self) -> None:
+        """Go on until all rests.
+
+        Raises RuntimeError where it does not.
+        """
+
 @final
 class Resting:
     """A body that nobody holds, pressed by fingers, without a clock.

@@ -26,6 +26,7 @@ core/compliance/compression core/compliance
 core/body
 core/contact/near_field core/contact/tool core/contact
 core/rest
+core/pile
 core/grip
 core/shape/solid core/shape/paper core/shape/rotation_strain core/shape
 core/bake/settings.py core/bake/cost core/bake/preview core/bake
@@ -87,11 +88,12 @@ tool
 fingers
 engine
 rest
+pile
 servo
 solid
 harness
 python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/rest
-python/servo python/harness python
+python/pile.rs python/servo python/harness python
 lib.rs
 """.split()  # noqa: SIM905 - a level of the house is a line
 

@@ -15,12 +15,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BodyTouch:
-    """Touch of a tool, grip or support with a free body; a grip presses no places with an area.
+    """Touch of a tool, grip, support or other body with a body that nobody holds.
+
+    A grip presses no places with an area.
 
     Attributes
     ----------
-    force : float64 (3,), on the tool, newton, in the world.
-    torque : float64 (3,), on the tool about its reference point, newton metres, in the world.
+    force : float64 (3,), on what touches it, newton, in the world.
+    torque : float64 (3,), on that about its reference point, newton metres, in the world.
     places : float64 (p, 3), pressed places where they are now, metres, in the world.
     pushes : float64 (p,), normal forces there, newton, all > 0.
     areas : float64 (p,), the places' shares of the surface, square metres.
@@ -54,6 +56,7 @@ class Rest:
     tools, supports : what touches it.
     elastic : elastic energy in it, joule.
     time : seconds on the way here, by its drag.
+    others : soft bodies that touch it, by their numbers in a pile.
     """
 
     body: SoftBody
@@ -62,6 +65,7 @@ class Rest:
     supports: tuple[BodyTouch, ...]
     elastic: float
     time: float
+    others: tuple[BodyTouch, ...] = ()
 
     @property
     def centre(self) -> Array:
@@ -74,7 +78,7 @@ class Rest:
 
     def displacements(self, young_modulus: float | None = None) -> Array:
         """Elastic displacements (n, 3) of the surface nodes in the body's frame, metres."""
-        touches = [*self.tools, *self.supports]
+        touches = [*self.tools, *self.supports, *self.others]
         nodes = np.concatenate([np.empty(0, np.int64), *(touch.nodes for touch in touches)])
         forces = np.concatenate([np.empty((0, 3)), *(touch.nodal_forces for touch in touches)])
         return self.body.deform(nodes, forces, young_modulus)

@@ -20,6 +20,7 @@ pub mod fingers;
 pub mod guardian;
 #[cfg(feature = "harness")]
 pub mod harness;
+pub mod pile;
 pub mod proxy;
 #[cfg(feature = "python")]
 mod python;

@@ -5,6 +5,7 @@ mod device;
 mod engine;
 #[cfg(feature = "harness")]
 mod harness;
+mod pile;
 mod rest;
 mod servo;
 mod solid;
@@ -39,6 +40,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<rest::prop::Prop>()?;
     module.add_class::<rest::resting::Resting>()?;
     module.add_class::<solid::Relaxation>()?;
+    module.add_class::<pile::Pile>()?;
     module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::polygons_on_line, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::nearest_polygon, module)?)?;

@@ -173,7 +173,7 @@ fn told_point<'py>(
     Ok(told)
 }
 
-fn restless(reason: Restless) -> PyErr {
+pub fn restless(reason: Restless) -> PyErr {
     PyRuntimeError::new_err(match reason {
         Restless::NotANumber => "a force came out as no number; press less deep".to_string(),
         Restless::Moving(time, speed) => format!(

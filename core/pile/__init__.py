@@ -1,0 +1,1 @@
+"""Soft bodies that press each other, on floors and fixed tools, pressed by others."""

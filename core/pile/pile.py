@@ -1,0 +1,177 @@
+"""Several soft bodies that press each other, with supports and tools, without a clock."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from palpate_servo import Pile as NativePile
+from palpate_servo import Tool as NativeTool
+
+from ..body.native_body import native_body
+from ..body.soft_body import SoftBody
+from ..contact.near_field.contact_points import ContactPoints
+from ..contact.tool.native_tool import native_shape, native_surface
+from ..contact.tool.pose import Pose
+from ..contact.tool.tools import Tool
+from ..errors import PalpateError
+from ..rest.bearing_points import bearing_points
+from ..rest.prop import at
+from ..rest.rest import Rest
+from ..rest.support import Floor, Support, friction_checked
+from .felt import Felt
+from .pile_settings import USUAL_PILE, PileSettings
+
+if TYPE_CHECKING:
+    # Types only, absent at run time.
+    from palpate_servo import RigidTool
+
+MOST_BODIES = 16
+
+
+class Pile:
+    """Bodies where they are, which keep what they hold in each other from call to call.
+
+    >>> from palpate.core.bake.settings import BakeSettings
+    >>> from palpate.core.bake.steps import bake
+    >>> from palpate.core.mesh.paper_cube import paper_cube
+    >>> from palpate.core.stiffness.pins import NoPins
+    >>> settings = BakeSettings(poisson_ratio=0.3, young_modulus=1e5, pins=NoPins(), density=1000.0)
+    >>> cube, _ = bake(paper_cube()[0], settings)
+    >>> above = Pose.at([0.0, 0.0, 0.0505])
+    >>> lower, upper = Pile([(cube, Pose.at([0.0, 0.0, 0.0])), (cube, above)], [Floor()]).settle()
+    >>> round(float(upper.others[0].force[2]), 3), round(float(lower.supports[0].force[2]), 3)
+    (-1.226, -2.453)
+
+    Parameters
+    ----------
+    bodies : each with the placement of its frame in the world; a free one with a density moves, a
+        pinned one is held where it is.
+    supports : what they may rest on.
+    tools : what may press them, with their poses in the world, outside of all bodies.
+
+    Raises
+    ------
+    PalpateError
+        No bodies or too many, none that is free, a free one without a density, invalid settings.
+    """
+
+    def __init__(
+        self,
+        bodies: Sequence[tuple[SoftBody, Pose]],
+        supports: Sequence[Floor | Support] = (),
+        tools: Sequence[tuple[Tool, Pose]] = (),
+        *,
+        settings: PileSettings = USUAL_PILE,
+    ) -> None:
+        if not 1 <= len(bodies) <= MOST_BODIES:
+            raise PalpateError(
+                "{bodies} bodies in a pile; give from 1 to {most}",
+                bodies=len(bodies),
+                most=MOST_BODIES,
+            )
+        if not any(body.is_free for body, _ in bodies):
+            raise PalpateError("all bodies are pinned; bake one without pins, which may move")
+        friction_checked(settings.friction)
+        self.bodies = tuple(body for body, _ in bodies)
+        self._points: list[ContactPoints] = []
+        natives, laid = {}, []
+        for body, placement in bodies:
+            points, near = bearing_points(body, settings.spacing)
+            if id(body) not in natives:
+                native = native_body(body, whole=True, may_move=True)
+                natives[id(body)] = native_surface(native, points, near)
+            self._points.append(points)
+            free = None
+            if body.is_free:
+                moments = body.mass / body.inertia.volume * body.inertia.moments
+                free = body.mass, body.inertia.centre, moments, settings.drag_time
+            laid.append((natives[id(body)], body.modulus(None), free, *at(placement)))
+        rigid = [
+            *((native_shape(tool), *at(pose), settings.friction) for tool, pose in tools),
+            *(_rigid(support, self._size()) for support in supports),
+        ]
+        self._led = [pose for _, pose in tools]
+        self._still = [support.pose for support in supports]
+        try:
+            self._native = NativePile(
+                laid, rigid, gravity=settings.gravity, friction=settings.friction
+            )
+        except ValueError as problem:
+            raise PalpateError("rest: {problem}", problem=problem) from problem
+
+    def _size(self) -> float:
+        return max(float(body.mesh.nodes.max() - body.mesh.nodes.min()) for body in self.bodies)
+
+    def lead(self, goals: Sequence[Pose]) -> None:
+        """Have the tools go to their goals, one each, from the next step on."""
+        if len(goals) != len(self._led):
+            raise PalpateError(
+                "{goals} goals for {tools} tools; give one for each",
+                goals=len(goals),
+                tools=len(self._led),
+            )
+        self._led = list(goals)
+        for number, goal in enumerate(goals):
+            self._native.lead(number, *at(goal))
+
+    def step(self, seconds: float = 1e-3) -> tuple[Rest, ...]:
+        """Go on by a tick, in which each tool goes by a stride at most: where each body is then.
+
+        Raises
+        ------
+        PalpateError
+            A force is no number.
+        """
+        try:
+            self._native.tick(seconds)
+        except (ValueError, RuntimeError) as problem:
+            raise PalpateError("rest: {problem}", problem=problem) from problem
+        return self.rest
+
+    def settle(self) -> tuple[Rest, ...]:
+        """Go on until tools are at their goals, wrenches on all bodies cancel and nothing changes.
+
+        Raises
+        ------
+        PalpateError
+            A body does not come to rest: it falls, slides or rolls without end.
+        """
+        try:
+            self._native.settle()
+        except RuntimeError as problem:
+            raise PalpateError("rest: {problem}", problem=problem) from problem
+        return self.rest
+
+    @property
+    def rest(self) -> tuple[Rest, ...]:
+        """Where each body is now, and what touches it: tools, supports, and all other bodies by
+        their numbers, its own among them, which never does.
+        """
+        native, count = self._native, len(self.bodies)
+        placements = [Pose(native.position(body), native.rotation(body)) for body in range(count)]
+        contacts = native.contacts()
+        rests = []
+        for number, body in enumerate(self.bodies):
+            felt = Felt(number, body, self._points[number], placements[number], contacts)
+            led = len(self._led)
+            rests.append(
+                Rest(
+                    body,
+                    placements[number],
+                    tuple(felt.of_obstacle(tool, pose) for tool, pose in enumerate(self._led)),
+                    tuple(
+                        felt.of_obstacle(led + support, pose)
+                        for support, pose in enumerate(self._still)
+                    ),
+                    native.elastic(number),
+                    native.time,
+                    tuple(felt.of_body(other, placements[other]) for other in range(count)),
+                )
+            )
+        return tuple(rests)
+
+
+def _rigid(support: Floor | Support, size: float) -> RigidTool:
+    tool = NativeTool.endless(size) if isinstance(support, Floor) else native_shape(support.tool)
+    return tool, *at(support.pose), support.friction

@@ -1,0 +1,29 @@
+"""Settings of bodies that press each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..rest.rest_settings import EARTH
+
+
+@dataclass(frozen=True)
+class PileSettings:
+    """Settings of a pile.
+
+    Attributes
+    ----------
+    friction : Coulomb's coefficient between bodies, and between tools and bodies; supports have
+        their own.
+    gravity : m/s2, in the world.
+    drag_time : seconds, as of one free body (``RestSettings``).
+    spacing : metres between contact points of all bodies; None for one that follows the curvature.
+    """
+
+    friction: float = 0.5
+    gravity: tuple[float, float, float] = EARTH
+    drag_time: float = 0.05
+    spacing: float | None = None
+
+
+USUAL_PILE = PileSettings()

@@ -1,0 +1,101 @@
+//! A contact point of a body, and what it meets.
+
+use glam::DVec3;
+
+/// What a point meets, by number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Against {
+    /// A rigid one.
+    Obstacle(usize),
+    /// Another body.
+    Body(usize),
+}
+
+/// A contact point near something.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// Whose point it is, by number.
+    pub body: usize,
+    /// Number of the contact point there.
+    pub point: u32,
+    /// What it meets.
+    pub against: Against,
+    /// Contact points of the other body that carry the force there, and their shares.
+    pub shares: Vec<(u32, f64)>,
+    /// Where the point is on the other, in whose frame, at rest, m.
+    pub place: DVec3,
+    /// Triangle of the other body that it met there.
+    pub(super) triangle: u32,
+    /// Out of the other, in the world.
+    pub normal: DVec3,
+    /// From the other, m.
+    pub gap: f64,
+    /// Force on the point's body along the normal, N.
+    pub push: f64,
+    /// Force on it across, by friction, in the world, N.
+    pub aside: DVec3,
+    /// Where on the other the point stuck.
+    pub(super) anchor: Option<DVec3>,
+    /// It slipped in the last tick.
+    pub(super) slips: bool,
+}
+
+impl Contact {
+    /// One without force, of which nothing is known yet.
+    pub(super) fn new(body: usize, point: u32, against: Against) -> Self {
+        Self {
+            body,
+            point,
+            against,
+            shares: Vec::new(),
+            place: DVec3::ZERO,
+            triangle: 0,
+            normal: DVec3::ZERO,
+            gap: f64::INFINITY,
+            push: 0.0,
+            aside: DVec3::ZERO,
+            anchor: None,
+            slips: false,
+        }
+    }
+
+    /// Force on the point's body, in the world, N; on the other its opposite acts.
+    #[inline]
+    pub fn force(&self) -> DVec3 {
+        self.normal * self.push + self.aside
+    }
+
+    /// What is to be kept first where there is no room for all: what presses, then what is near.
+    #[inline]
+    pub(super) fn rank(&self) -> f64 {
+        if self.push > 0.0 {
+            f64::NEG_INFINITY
+        } else {
+            self.gap
+        }
+    }
+
+    /// How many times its force acts on a body: once, against, or not at all.
+    #[inline]
+    pub(super) fn sign_on(&self, body: usize) -> f64 {
+        if self.body == body {
+            1.0
+        } else if self.against == Against::Body(body) {
+            -1.0
+        } else {
+            0.0
+        }
+    }
+
+    /// Contact points of a body that carry its force there, and their shares.
+    #[inline]
+    pub(super) fn shares_on(&self, body: usize) -> Vec<(u32, f64)> {
+        if self.body == body {
+            vec![(self.point, 1.0)]
+        } else if self.against == Against::Body(body) {
+            self.shares.clone()
+        } else {
+            Vec::new()
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! `Pile`: soft bodies that press each other, without a clock.
+
+use glam::{DMat3, DVec3};
+use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::pile::contact::{Against, Contact};
+use crate::pile::member::Member;
+use crate::pile::obstacle::Obstacle;
+use crate::pile::piled;
+use crate::python::rest::prop::placed;
+use crate::python::rest::resting::restless;
+use crate::python::tool::shape::Tool;
+use crate::python::tool::surface::ToolSurface;
+use crate::python::vectors::{
+    Matrix, Rows, Triple, Vector, array, finite, matrix, pose, positive, square, table,
+};
+use crate::rest::free_body::FreeBody;
+use crate::tool::coefficients::Friction;
+
+/// A body: its contact points, Young's modulus, mass, centre, moments of inertia and drag time, if it is
+/// free, and where its frame is.
+type Laid<'py> = (
+    PyRef<'py, ToolSurface>,
+    f64,
+    Option<(f64, Triple, Rows, f64)>,
+    Triple,
+    Rows,
+);
+/// A rigid tool, where it is, and the coefficient of friction.
+type Rigid<'py> = (PyRef<'py, Tool>, Triple, Rows, f64);
+
+#[pyclass(module = "palpate_servo")]
+pub struct Pile {
+    inner: piled::Pile,
+}
+
+#[pymethods]
+impl Pile {
+    #[new]
+    #[pyo3(signature = (bodies, obstacles, *, gravity, friction))]
+    fn new(
+        bodies: Vec<Laid<'_>>,
+        obstacles: Vec<Rigid<'_>>,
+        gravity: Triple,
+        friction: f64,
+    ) -> PyResult<Self> {
+        let members = bodies.into_iter().map(member).collect::<PyResult<_>>()?;
+        let obstacles = obstacles
+            .into_iter()
+            .map(obstacle)
+            .collect::<PyResult<_>>()?;
+        let gravity = finite("gravity", gravity)?;
+        let friction = coefficient(friction)?;
+        Ok(Self {
+            inner: piled::Pile::new(members, obstacles, gravity, friction),
+        })
+    }
+
+    #[getter]
+    fn time(&self) -> f64 {
+        self.inner.time()
+    }
+
+    fn position<'py>(&self, py: Python<'py>, body: usize) -> PyResult<Vector<'py>> {
+        Ok(array(py, self.member(body)?.placement.position))
+    }
+
+    fn rotation<'py>(&self, py: Python<'py>, body: usize) -> PyResult<Matrix<'py>> {
+        square(py, DMat3::from_quat(self.member(body)?.placement.rotation))
+    }
+
+    fn elastic(&self, body: usize) -> PyResult<f64> {
+        Ok(self.member(body)?.elastic())
+    }
+
+    /// Contacts that press, an array for each thing about them.
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let pressed: Vec<&Contact> = (self.inner.contacts().iter())
+            .filter(|contact| contact.push > 0.0)
+            .collect();
+        let told = PyDict::new(py);
+        let numbers = |of: &dyn Fn(&Contact) -> i64| {
+            let found: Vec<i64> = pressed.iter().map(|contact| of(contact)).collect();
+            PyArray1::from_vec(py, found)
+        };
+        told.set_item("body", numbers(&|contact| contact.body as i64))?;
+        told.set_item("point", numbers(&|contact| i64::from(contact.point)))?;
+        told.set_item(
+            "obstacle",
+            numbers(&|contact| match contact.against {
+                Against::Obstacle(number) => number as i64,
+                Against::Body(_) => -1,
+            }),
+        )?;
+        told.set_item(
+            "other",
+            numbers(&|contact| match contact.against {
+                Against::Obstacle(_) => -1,
+                Against::Body(number) => number as i64,
+            }),
+        )?;
+        let pushes: Vec<f64> = pressed.iter().map(|contact| contact.push).collect();
+        told.set_item("push", PyArray1::from_vec(py, pushes))?;
+        let forces: Vec<DVec3> = pressed.iter().map(|contact| contact.force()).collect();
+        told.set_item("force", table(py, forces.into_iter())?)?;
+        let members = &self.inner.members;
+        let places: Vec<DVec3> = (pressed.iter())
+            .map(|contact| members[contact.body].place(contact.point))
+            .collect();
+        told.set_item("place", table(py, places.into_iter())?)?;
+        let mut shared: [Vec<i64>; 2] = [Vec::new(), Vec::new()];
+        let mut shares = Vec::new();
+        for (number, contact) in pressed.iter().enumerate() {
+            for &(point, share) in &contact.shares {
+                shared[0].push(number as i64);
+                shared[1].push(i64::from(point));
+                shares.push(share);
+            }
+        }
+        let [contact, point] = shared;
+        told.set_item("shared_contact", PyArray1::from_vec(py, contact))?;
+        told.set_item("shared_point", PyArray1::from_vec(py, point))?;
+        told.set_item("share", PyArray1::from_vec(py, shares))?;
+        Ok(told)
+    }
+
+    fn lead(&mut self, obstacle: usize, position: Triple, rotation: Rows) -> PyResult<()> {
+        let goal = pose(position, rotation)?;
+        let led = (self.inner.obstacles.get_mut(obstacle))
+            .ok_or_else(|| PyValueError::new_err(format!("there is no obstacle {obstacle}")))?;
+        led.goal = goal;
+        Ok(())
+    }
+
+    fn tick(&mut self, dt: f64) -> PyResult<()> {
+        let dt = positive("dt", dt)?;
+        self.inner.tick(dt).map(drop).map_err(restless)
+    }
+
+    fn settle(&mut self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.inner.settle()).map_err(restless)
+    }
+}
+
+impl Pile {
+    fn member(&self, body: usize) -> PyResult<&Member> {
+        (self.inner.members.get(body))
+            .ok_or_else(|| PyValueError::new_err(format!("there is no body {body}")))
+    }
+}
+
+fn member((surface, modulus, free, position, rotation): Laid<'_>) -> PyResult<Member> {
+    let free = free
+        .map(|(mass, centre, inertia, drag_time)| {
+            let free = FreeBody {
+                mass,
+                centre: finite("centre", centre)?,
+                inertia: matrix(inertia),
+                drag_time,
+            };
+            if free.is_sound() {
+                Ok(free)
+            } else {
+                Err(PyValueError::new_err(
+                    "mass, inertia and drag_time are not those of a body; give positive ones",
+                ))
+            }
+        })
+        .transpose()?;
+    let placement = placed(&pose(position, rotation)?);
+    Ok(Member::new(
+        surface.inner.clone(),
+        positive("young_modulus", modulus)?,
+        free,
+        placement,
+    ))
+}
+
+fn obstacle((tool, position, rotation, friction): Rigid<'_>) -> PyResult<Obstacle> {
+    let pose = pose(position, rotation)?;
+    Ok(Obstacle::new(
+        tool.inner.clone(),
+        pose,
+        coefficient(friction)?,
+    ))
+}
+
+fn coefficient(friction: f64) -> PyResult<f64> {
+    if Friction::of(friction).is_sound() {
+        Ok(friction)
+    } else {
+        Err(PyValueError::new_err(format!(
+            "friction is {friction}; give a coefficient, zero or more"
+        )))
+    }
+}
