@@ -27,14 +27,13 @@ def main() -> int:
         import bodies
         import bpy
         import finger_scenes
-        import large_scene
-        import rest_scenes
+        import lifted_scene
         import scenes
 
         bpy.context.preferences.filepaths.save_version = 0
         stored = {"Cube": bodies.cube_tets()}
         stored |= {name.title(): bodies.stored_tets(name) for name in ("drumstick", "hare")}
-        stored |= finger_scenes.tets() | rest_scenes.tets()
+        stored |= finger_scenes.tets() | lifted_scene.tets()
         for name, (make, finish) in {
             "cube": (lambda: [scenes.cube_scene()], None),
             "mouse": (lambda: [scenes.mouse_scene()], None),
@@ -44,9 +43,8 @@ def main() -> int:
             "imprint": (finger_scenes.imprint_scene, finger_scenes.keep_imprints),
             "animated": (finger_scenes.animated_scene, finger_scenes.bake_animation),
             "fingertip": (finger_scenes.fingertip_scene, None),
-            "lying": (rest_scenes.lying_scene, rest_scenes.settle_mouse),
-            "lifted": (rest_scenes.lifted_scene, rest_scenes.bake_lift),
-            "large": (lambda: [large_scene.hare_scene()], None),
+            "lifted": (lifted_scene.lifted_scene, lifted_scene.bake_lift),
+            "large": (lambda: [scenes.hare_scene()], None),
         }.items():
             if options.only not in {None, name}:
                 continue

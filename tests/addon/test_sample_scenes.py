@@ -58,6 +58,7 @@ def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
         ("dents", ("Dents", "Poke"), 37),
         ("imprint", ("Clay", "Foam"), 1),
         ("animated", ("Animated",), 30),
+        ("lifted", ("Ball",), 36),
     ],
 )
 def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
