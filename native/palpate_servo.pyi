@@ -360,6 +360,10 @@ class Snapshot(FingerSnapshot):
         """
 
     @property
+    def firmness(self) -> float:
+        """Factor by which forces are other than those of a linear body at the same places."""
+
+    @property
     def placement(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position, m, and rotation of the body's frame after the tick; of one that is held those
         of the world.
@@ -858,6 +862,13 @@ class Servo:
     def set(self, settings: ServoSettings) -> None:
         """Take over settings with the next tick; ValueError, and nothing changed, for one that
         cannot be.
+        """
+
+    def set_firmness(self, root: float, whole: float, reach: float) -> None:
+        """Force as 1 + root sqrt(W) + whole W times the linear one, W its elastic energy in J/Pa,
+        to W = reach, beyond which the factor stays; faded in. Zeros for a linear body. ValueError
+        for what is not finite. Not felt on bodies that nobody holds, nor on those that give way
+        with time.
         """
 
     def start(self, device: Pointer | LinkDevice | HaplyDevice) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,10 @@ class PointTouch:
 
     area = 0.0
     largest_pressure = 0.0
+
+    def times(self, share: float) -> PointTouch:
+        """With so much of its force at the same place."""
+        return replace(self, force=share * self.force, nodal_forces=share * self.nodal_forces)
 
     @property
     def nodes(self) -> NDArray[np.int64]:
@@ -81,6 +85,18 @@ class ToolTouch:
     areas: Array
     nodes: NDArray[np.int64]
     nodal_forces: Array
+
+    def times(self, share: float) -> ToolTouch:
+        """With so much of all its forces at the same pose, and as much stiffer."""
+        return replace(
+            self,
+            force=share * self.force,
+            torque=share * self.torque,
+            stiffness=share * self.stiffness,
+            forces=share * self.forces,
+            pushes=share * self.pushes,
+            nodal_forces=share * self.nodal_forces,
+        )
 
     @property
     def touching(self) -> bool:

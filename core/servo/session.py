@@ -118,7 +118,7 @@ def servo_on(
 
 
 def drawn_loads(snapshot: Snapshot) -> list[tuple[NDArray[np.int64], NDArray[np.float64]]]:
-    """Nodes (k,) of the surface and forces (k, 3), N, under which the body looks as it does.
+    """Nodes (k,) of the surface and forces (k, 3), N, under which a linear body looks as it does.
 
     A load a finger, and one of what bears it; or one of all that a body remembers which gives way
     with time.
@@ -126,7 +126,8 @@ def drawn_loads(snapshot: Snapshot) -> list[tuple[NDArray[np.int64], NDArray[np.
     if len(snapshot.remembered_nodes):
         return [(snapshot.remembered_nodes, snapshot.remembered_forces)]
     fingers = snapshot.fingers
-    loads = [(finger.nodes, finger.nodal_forces) for finger in fingers if len(finger.nodes)]
+    firm = snapshot.firmness
+    loads = [(finger.nodes, finger.nodal_forces / firm) for finger in fingers if len(finger.nodes)]
     borne = [(snapshot.borne_nodes, snapshot.borne_forces)] if len(snapshot.borne_nodes) else []
     return loads + borne
 

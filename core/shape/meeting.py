@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
+from .rotation_strain.finger_load import FingerLoad
 from .shapes import LinearShape, Shape
 
 Array = NDArray[np.float64]
@@ -42,23 +43,6 @@ MOVED_ON = 0.05
 MOST_NODES = 12
 # Steps when somebody waits for the answer.
 MOST_STEPS = 60
-
-
-@dataclass(frozen=True, eq=False)
-class FingerLoad:
-    """Load of one finger by the linear force law: forces (k, 3), N, on nodes (k,) of the mesh."""
-
-    nodes: NDArray[np.int64]
-    forces: Array
-
-    @property
-    def weights(self) -> Array:
-        """Share (k,) of the load that each node carries; of no load, alike."""
-        sizes = np.linalg.norm(self.forces, axis=1)
-        total = sizes.sum()
-        alike = np.full(len(sizes), 1.0 / max(1, len(sizes)))
-        shares: Array = sizes / total if total > 0.0 else alike
-        return shares
 
 
 @dataclass(frozen=True, eq=False)

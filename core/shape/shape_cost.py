@@ -45,7 +45,7 @@ def shape_cost(name: ShapeName, size: BodySize) -> ShapeCost:
     match name:
         case "linear":
             return ShapeCost(_linear_seconds(size), 0.0, 0.0, 0.0)
-        case "rotation-strain":
+        case "real":
             return _rotation_strain(size)
         case "paper":
             return _paper(size)

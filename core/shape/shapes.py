@@ -1,11 +1,12 @@
 """The shapes that can be drawn of a body under forces: one name, one sentence and one maker each.
 
-All of them agree for small forces. They differ in what is drawn, not in the force that is felt.
+All of them agree for small forces. They differ in what is drawn; *real* also in how firmly the body
+presses back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol, TypeAlias, get_args
@@ -17,17 +18,23 @@ from ..body.soft_body import SoftBody
 from ..errors import PalpateError
 from ..sentence import Sentence
 from .paper.paper_shape import PaperShape
+from .rotation_strain.finger_load import FingerLoad
+from .rotation_strain.firmness import Firmness
 from .rotation_strain.rotation_strain_shape import RotationStrainShape
 
-ShapeName: TypeAlias = Literal["linear", "paper", "rotation-strain"]
+ShapeName: TypeAlias = Literal["linear", "paper", "real"]
 SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
 EXPLANATIONS: dict[ShapeName, str] = {
     "linear": "As the force is computed; large bends look swollen",
     "paper": "The paper's (16): large deformations of single nodes, stored and added up",
-    "rotation-strain": "Bends and twists keep their size; nearest to the truth, without a table",
+    "real": "By the material's own law, as it is seen and as it is felt: nearest to the truth",
 }
 # Names that files and scripts may still hold.
-FORMER_NAMES: dict[str, ShapeName] = {"table": "paper", "series": "paper"}
+FORMER_NAMES: dict[str, ShapeName] = {
+    "table": "paper",
+    "series": "paper",
+    "rotation-strain": "real",
+}
 SERIES_IS_PAPER = Sentence(
     "the shape Series is no more; Paper is drawn, whose tables are now found by its power series"
 )
@@ -63,6 +70,13 @@ class Shape(Protocol):
         better, until :attr:`ready` is 1.
         """
         ...
+
+    def firmness(self, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:  # noqa: ARG002
+        """How much more firmly than a linear body this one presses back under these linear loads.
+
+        May take some tenths of a second; thread-safe.
+        """
+        return Firmness()
 
     def wait_for(self, nodes: NDArray[np.int64]) -> None:
         """Return when all is there that forces on these nodes (k,) of the mesh need.
@@ -107,7 +121,7 @@ class LinearShape(Shape):
 # How each is made, of a body and the file it came from, beside which tables may be kept.
 MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
     "linear": lambda body, _: LinearShape(body),
-    "rotation-strain": lambda body, _: RotationStrainShape(body),
+    "real": lambda body, _: RotationStrainShape(body),
     "paper": PaperShape,
 }
 
@@ -120,7 +134,7 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
     >>> from palpate.core.mesh.paper_cube import paper_cube
     >>> body, _ = bake(paper_cube()[0], BakeSettings(poisson_ratio=0.45, young_modulus=1e5))
     >>> top = body.compliance.free_surface[-1:]
-    >>> drawn = shape(body, "rotation-strain").displacements(top, np.array([[0.0, 0.0, -1.0]]))
+    >>> drawn = shape(body, "real").displacements(top, np.array([[0.0, 0.0, -1.0]]))
     >>> drawn.shape, bool(drawn[-1, 2] < 0.0)
     ((73, 3), True)
 

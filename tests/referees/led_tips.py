@@ -46,15 +46,17 @@ def led(
     loops: Sequence[Loop],
     tips: Sequence[Tip],
     motors: float | None = None,
+    firmness: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Follow:
     """A finger for each loop, set down in the air where that begins: its front is led, and looks
     where the way goes in.
 
-    ``motors`` bear so much, newton; None without motors.
+    ``motors`` bear so much, newton; None without motors. ``firmness`` as `set_firmness` takes it.
     """
     raised = np.array([tip.front * loop.normal for tip, loop in zip(tips, loops, strict=True)])
     starts = np.array([loop.press[0] for loop in loops]) + raised
     fingers = SteppedFingers(native, starts, settings, max_force=motors)
+    fingers.set_firmness(*firmness)
     for number, (tip, loop) in enumerate(zip(tips, loops, strict=True)):
         if tip.made is not None:
             fingers.set_tool(tip.made, _facing(loop.normal).tolist(), number)

@@ -5,6 +5,7 @@ Small bodies are computed on their own nodes, larger ones by :mod:`.two_levels`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Protocol
@@ -15,6 +16,8 @@ from numpy.typing import NDArray
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
+from .finger_load import FingerLoad
+from .firmness import FirmBody, Firmness
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
@@ -96,6 +99,14 @@ class RotationStrainShape:
         forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
         return made.displacements(np.asarray(nodes).reshape(-1), forces)
 
+    def firmness(self, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:
+        """See :class:`.shapes.Shape`; linear until it is prepared, and of a body on a lattice."""
+        made = self._made.result() if self._made.done() else None
+        if not isinstance(made, _OnOwnNodes):
+            return Firmness()
+        unit = [FingerLoad(load.nodes, load.forces / young_modulus, load.sticks) for load in loads]
+        return made.firm.under(unit)
+
     def wait_for(self, nodes: NDArray[np.int64]) -> None:  # noqa: ARG002 - of no single place
         """Return when the preparation is done; it is the same for all ``nodes``.
 
@@ -105,9 +116,7 @@ class RotationStrainShape:
             It failed, because the pins do not hold the body, or the shape was closed before.
         """
         if self._made.result() is None:
-            raise PalpateError(
-                "rotation-strain: this shape was closed before it was prepared; make a new one"
-            )
+            raise PalpateError("real: this shape was closed before it was prepared; make a new one")
 
     def close(self) -> None:
         """End the preparation at its next stage."""
@@ -122,7 +131,9 @@ class RotationStrainShape:
         if self._goes_on(0.2):
             _ = solid.factor
         if self._goes_on(0.6):
-            made = _OnOwnNodes(solid, relaxation(solid), self._plan.steps)
+            relaxing = relaxation(solid)
+            firm = FirmBody(solid, relaxing.another())
+            made = _OnOwnNodes(solid, relaxing, self._plan.steps, firm)
             if not self._is_ended:
                 return made
         return None
@@ -146,6 +157,7 @@ class _OnOwnNodes:
     solid: FreeSolid
     relaxation: Relaxation
     steps: int
+    firm: FirmBody
 
     def displacements(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]

@@ -3,6 +3,7 @@
 mod child_thread;
 pub mod exchange;
 pub mod finger;
+mod firm;
 pub mod paced;
 pub mod pressed_patch;
 pub mod recorder;
@@ -22,6 +23,7 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::touch::ContactMode;
+use crate::control::firmness::Firmness;
 use crate::control::toll::Toll;
 use crate::creep::shown::Remembered;
 use crate::creep::step::Step;
@@ -59,6 +61,9 @@ pub struct Servo {
     borne: Input<Borne>,
     nothing_bears: bool,
     toll: Toll<MAX_FINGERS>,
+    firmness: Firmness,
+    /// What the linear contact held in the last tick, J/Pa.
+    pressed: f64,
     tick: u64,
     /// Time of the last tick, s.
     ticked_at: Option<f64>,
@@ -90,12 +95,15 @@ impl Servo {
         let creep = creep_of(&settings, &body, dt);
         let relaxed = settings.young_modulus;
         settings.young_modulus *= creep.firmness();
+        let firm = self.firm(&settings, frame.is_held() && creep.is_none(), dt);
+        settings.young_modulus *= firm.map_or(1.0, |firm| firm.share);
         self.tick += 1;
         let moment = Moment {
             tick: self.tick,
             now,
             dt,
             creep,
+            firmness: firm,
             gap: self.ticked_at.replace(now).map_or(0.0, |last| now - last),
             body: &body,
             body_number: number,
@@ -127,7 +135,7 @@ impl Servo {
         self.stages.end_of(Stage::Write, &mut since);
         self.show_memory(moment.tick, relaxed);
         self.show_borne(moment.tick, moment.frame.is_held(), settings.young_modulus);
-        self.publish(&shots, &self.frame(&body), settings.young_modulus);
+        self.publish(&shots, &self.frame(&body), &moment);
     }
 
     /// The contact of each finger with the body.
@@ -181,17 +189,20 @@ impl Servo {
         if moment.body_replaced {
             (self.toll, beside) = (Toll::default(), 0.0);
         }
-        let pressed = touches.map(|touch| touch.map_or_else(Default::default, |t| t.pressed));
+        let mut pressed = touches.map(|touch| touch.map_or_else(Default::default, |t| t.pressed));
+        self.hold(moment, &mut pressed);
         let brakes = self.toll.take(&pressed, beside, moment.dt);
         each(&mut self.fingers, |k, _| {
             Some(touches[k]?.braked(brakes[k]))
         })
     }
 
-    fn publish(&mut self, shots: &Each<Snapshot>, frame: &Frame, young_modulus: f64) {
+    fn publish(&mut self, shots: &Each<Snapshot>, frame: &Frame, moment: &Moment<'_>) {
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
         published.placement = frame.placement();
+        published.firmness = moment.firmness.map_or(1.0, |firm| firm.share);
+        let young_modulus = moment.settings.young_modulus;
         for (number, shot) in shots.iter().flatten().enumerate() {
             published.reports[number] = *self.fingers[number].tell(shot, frame, young_modulus);
             let sample = Sample::of(shot, number as u32);

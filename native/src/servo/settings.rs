@@ -5,6 +5,7 @@ use glam::DMat3;
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
+use crate::control::firmness::Firmness;
 use crate::control::safety::Limits;
 use crate::creep::relaxation::Creep;
 use crate::creep::step::Step;
@@ -21,6 +22,8 @@ pub struct Settings {
     pub enabled: bool,
     /// The most that any device is told, N; without one, what the servo began with.
     pub max_force: Option<f64>,
+    /// How firm the body is beside a linear one, where it presses back in the end.
+    pub firmness: Firmness,
     /// How the body gives way with time.
     pub creep: Creep,
     /// Shading, friction and how a contact becomes a force.
@@ -36,6 +39,7 @@ impl Settings {
             young_modulus,
             enabled: true,
             max_force: None,
+            firmness: Firmness::default(),
             creep: Creep::default(),
             feel: Feel::default(),
             fingers: [FingerSettings::default(); MAX_FINGERS],
@@ -85,6 +89,17 @@ impl FingerSettings {
     }
 }
 
+/// Firmness in a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Firm {
+    /// Young's modulus without it, Pa.
+    pub modulus: f64,
+    /// Factor of all forces, in Young's modulus of the tick already.
+    pub share: f64,
+    /// By how much more steeply they grow, 1 or more.
+    pub steepness: f64,
+}
+
 /// A tick, the same for all fingers.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment<'a> {
@@ -106,6 +121,8 @@ pub struct Moment<'a> {
     pub frame: Frame,
     /// How the body gives way with time in this tick.
     pub creep: Step,
+    /// Share of Young's modulus that comes of the body's firmness, and how much more steeply forces grow.
+    pub firmness: Option<Firm>,
     /// In force, Young's modulus that of the tick.
     pub settings: &'a Settings,
     /// Fixed at the start.

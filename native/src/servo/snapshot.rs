@@ -79,6 +79,8 @@ pub struct Published {
     pub count: usize,
     /// Samples not recorded because nobody emptied the ring.
     pub samples_lost: u64,
+    /// Factor by which forces are other than a linear body's; 0 before the first tick.
+    pub firmness: f64,
     /// Where the body is after the tick; one that is held stays.
     pub placement: Placement,
 }

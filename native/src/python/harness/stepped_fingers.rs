@@ -14,13 +14,13 @@ use crate::device::{Device, DeviceFrame, Probe, Reading};
 use crate::python::body::surface::Body;
 use crate::python::harness::stepping::Stepping;
 use crate::python::rest::prop::Prop;
-use crate::python::servo::settings::{Chosen, Given};
+use crate::python::servo::settings::{Chosen, Given, firmness};
 use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::python::tool::made::{GivenTool, made, tip};
 use crate::python::vectors::{Rows, Triple, Vector, finite, rotation as turn, vectors};
 use crate::servo::paced::locked;
 use crate::servo::pressed_patch::PressedPatch;
-use crate::servo::settings::Options;
+use crate::servo::settings::{Options, Settings};
 
 /// Forces and torques (ticks, m, 3).
 type Felt<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>);
@@ -231,6 +231,16 @@ impl SteppedFingers {
             position: finite("position", position)?,
             set_down: true,
         };
+        Ok(())
+    }
+
+    fn set_firmness(&self, root: f64, whole: f64, reach: f64) -> PyResult<()> {
+        let stepping = &mut locked(&self.0).stepping;
+        let settings = Settings {
+            firmness: firmness(root, whole, reach)?,
+            ..stepping.settings
+        };
+        stepping.write(settings);
         Ok(())
     }
 

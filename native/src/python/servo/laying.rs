@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::control::firmness::Firmness;
 use crate::python::rest::prop::Prop;
 use crate::python::servo::refusals::check_finger;
 use crate::python::servo::thread::Servo;
@@ -12,6 +13,14 @@ use crate::python::tool::made::{GivenTool, made, tip};
 use crate::servo::paced::locked;
 
 impl Servo {
+    /// Has the body be so firm.
+    pub(super) fn firm(&self, firmness: Firmness) {
+        let settings = locked(&self.settings).firm(firmness);
+        if let Some(running) = self.current() {
+            running.set(settings);
+        }
+    }
+
     /// Gives a finger a tool, or makes it a point (none).
     pub(super) fn equip(
         &self,

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::control::coupling::Coupling;
+use crate::control::firmness::Firmness;
 use crate::control::safety::Limits;
 use crate::creep::relaxation::Creep;
 use crate::creep::term::{MOST_TERMS, Term};
@@ -192,7 +193,10 @@ impl Chosen {
     /// These settings for devices that bring couplings and frames, after others: a frame that is
     /// another one than before sets the probe down anew.
     pub fn on(&self, brought: &[FingerSettings; MAX_FINGERS], before: &Settings) -> Settings {
-        let mut settings = self.settings;
+        let mut settings = Settings {
+            firmness: before.firmness,
+            ..self.settings
+        };
         for (k, finger) in settings.fingers.iter_mut().enumerate() {
             let orientation = finger.orientation;
             *finger = FingerSettings {
@@ -206,6 +210,17 @@ impl Chosen {
             }
         }
         settings
+    }
+}
+
+/// How firm the body is, from numbers of J/Pa.
+pub fn firmness(root: f64, whole: f64, reach: f64) -> PyResult<Firmness> {
+    if [root, whole, reach].into_iter().all(f64::is_finite) && reach >= 0.0 {
+        Ok(Firmness { root, whole, reach })
+    } else {
+        Err(PyValueError::new_err(format!(
+            "firmness is {root}, {whole} to {reach}; give finite numbers, the last not below zero"
+        )))
     }
 }
 

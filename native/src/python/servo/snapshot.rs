@@ -182,6 +182,7 @@ pub struct Loads {
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
     placement: Placement,
+    firmness: f64,
     loads: Loads,
 }
 
@@ -203,6 +204,7 @@ impl Snapshot {
         let told = Self {
             fingers,
             placement: published.placement,
+            firmness: published.firmness,
             loads,
         };
         Py::new(py, (told, first))
@@ -230,6 +232,14 @@ impl Snapshot {
     #[getter]
     fn nodal_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         rows(py, &self.shot().nodal_forces)
+    }
+    #[getter]
+    fn firmness(&self) -> f64 {
+        if self.firmness > 0.0 {
+            self.firmness
+        } else {
+            1.0
+        }
     }
     #[getter]
     fn placement<'py>(&self, py: Python<'py>) -> PyResult<(Vector<'py>, Matrix<'py>)> {

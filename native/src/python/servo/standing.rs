@@ -2,6 +2,7 @@
 
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
+use crate::control::firmness::Firmness;
 use crate::device::DeviceFrame;
 use crate::python::servo::settings::Chosen;
 use crate::servo::settings::FingerSettings;
@@ -27,6 +28,11 @@ impl Standing {
             brought,
             settings,
         }
+    }
+
+    pub fn firm(&mut self, firmness: Firmness) -> Settings {
+        self.settings.firmness = firmness;
+        self.settings
     }
 
     pub fn choose(&mut self, chosen: Chosen) -> Settings {

@@ -9,6 +9,7 @@ use super::bodies::{Hand, exchange};
 use super::rings::{Giver, rings};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
+use crate::control::firmness::Firmness;
 use crate::control::toll::Toll;
 use crate::creep::shown::Remembered;
 use crate::device::Device;
@@ -89,6 +90,8 @@ impl Servo {
             borne: borne_in,
             nothing_bears: true,
             toll: Toll::default(),
+            firmness: Firmness::default(),
+            pressed: 0.0,
             tick: 0,
             ticked_at: None,
             samples_lost: 0,

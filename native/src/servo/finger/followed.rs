@@ -69,17 +69,29 @@ impl Followed<'_> {
 
     /// As the toll sees the finger while it presses nothing.
     pub(super) fn free(&self) -> Pressed {
+        let firm = &self.moment.firmness;
         Pressed {
             finger: self.shot.probe,
             is_set_down: self.is_set_down,
-            // On a body that moves no place stays.
-            place: (self.hold.filter(|_| self.moment.frame.is_held())).map(|_| self.proxy),
+            // On a body that moves no place stays, and where firmness changes no work is known.
+            place: (self.hold)
+                .filter(|_| self.moment.frame.is_held() && firm.is_none())
+                .map(|_| self.proxy),
             law: Law {
-                modulus: self.moment.settings.young_modulus,
+                modulus: firm.map_or(self.moment.settings.young_modulus, |firm| firm.modulus),
                 most_stiffness: self.most_stiffness(),
                 most_force: self.limits().max_force,
             },
             ..Pressed::default()
+        }
+    }
+
+    /// A contact as the coupling is to see it: as stiff as its force grows.
+    fn steep(&self, contact: &Contact) -> Contact {
+        let steepness = self.moment.firmness.map_or(1.0, |firm| firm.steepness);
+        Contact {
+            stiffness: contact.stiffness * steepness,
+            ..*contact
         }
     }
 
@@ -93,7 +105,12 @@ impl Followed<'_> {
             };
         }
         let own = self.own;
-        coupler.couple(contact, &own.coupling, own.frame.scale, self.moment.dt)
+        coupler.couple(
+            &self.steep(contact),
+            &own.coupling,
+            own.frame.scale,
+            self.moment.dt,
+        )
     }
 
     /// The force, N, of a contact, in the hand's axes, in which the coupling's spring is already.
@@ -102,6 +119,11 @@ impl Followed<'_> {
             return seen.force;
         }
         let own = self.own;
-        coupler.drive(seen, &own.coupling, own.frame.scale, self.moment.dt)
+        coupler.drive(
+            &self.steep(seen),
+            &own.coupling,
+            own.frame.scale,
+            self.moment.dt,
+        )
     }
 }

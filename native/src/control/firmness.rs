@@ -1,0 +1,131 @@
+//! How much more firmly a body of its material's law presses back than a linear one.
+//!
+//! Forces of the linear contact times G, a function of the elastic energy W that the linear contact holds
+//! (at unit modulus, J/Pa):
+//!
+//!     G(W) = 1 + root sqrt(W) + whole W          to W = reach, beyond which it stays
+//!
+//! What is held is then the integral of G over W, a function of the fingers' poses alone, so that nothing is
+//! gained at one place; small presses are linear. Whoever relaxes the body under the forces of a touch finds
+//! root and whole, in the background. They are faded in, and what that puts into the body the
+//! [toll](super::toll) takes.
+
+/// Bounds of what is felt.
+const LEAST: f64 = 0.3;
+const MOST: f64 = 3.0;
+/// Another firmness is there within about this time, s.
+const FADING: f64 = 0.05;
+
+/// Firmness of a touch; by default that of the linear body.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Firmness {
+    /// Per square root of J/Pa.
+    pub root: f64,
+    /// Per J/Pa.
+    pub whole: f64,
+    /// J/Pa.
+    pub reach: f64,
+}
+
+impl Firmness {
+    /// Whether it is that of the linear body.
+    pub fn is_linear(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// G where the linear contact holds so much, J/Pa.
+    pub fn at(&self, energy: f64) -> f64 {
+        let known = energy.clamp(0.0, self.reach);
+        (1.0 + self.root * known.sqrt() + self.whole * known).clamp(LEAST, MOST)
+    }
+
+    /// The mean of G from nothing to there: with it the linear energy is what is held.
+    pub fn mean(&self, energy: f64) -> f64 {
+        let known = energy.clamp(0.0, self.reach);
+        let to_reach = 1.0 + 2.0 / 3.0 * self.root * known.sqrt() + 0.5 * self.whole * known;
+        if energy > known {
+            (to_reach * known + self.at(energy) * (energy - known)) / energy
+        } else {
+            to_reach
+        }
+    }
+
+    /// By how much more steeply than firmly the force grows with the depth, 1 or more.
+    pub fn steepness(&self, energy: f64) -> f64 {
+        if energy >= self.reach {
+            return 1.0;
+        }
+        let known = energy.max(0.0);
+        let steep = 1.0 + 2.0 * self.root * known.sqrt() + 3.0 * self.whole * known;
+        (steep / self.at(known)).max(1.0)
+    }
+
+    /// A tick of `dt` s nearer to another.
+    #[must_use]
+    pub fn faded(&self, to: &Self, dt: f64) -> Self {
+        let share = dt / (FADING + dt);
+        let between = |from: f64, to: f64| from + (to - from) * share;
+        Self {
+            root: between(self.root, to.root),
+            whole: between(self.whole, to.whole),
+            reach: between(self.reach, to.reach),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FIRM: Firmness = Firmness {
+        root: 0.2,
+        whole: 0.1,
+        reach: 4.0,
+    };
+
+    #[test]
+    fn what_is_held_is_the_integral_of_the_firmness() {
+        for most in [0.5, 3.9, 4.0, 9.0] {
+            let steps = 100_000;
+            let each = most / f64::from(steps);
+            let middle = |k: u32| FIRM.at((f64::from(k) + 0.5) * each);
+            let sum: f64 = (0..steps).map(middle).sum();
+            assert!((sum * each / most - FIRM.mean(most)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_force_grows_as_steeply_as_is_told() {
+        // The force goes with the depth s times G, and s with the root of the energy.
+        let force = |s: f64| s * FIRM.at(s * s);
+        for s in [0.1, 1.0, 1.9] {
+            let slope = (force(s + 1e-6) - force(s - 1e-6)) / 2e-6;
+            assert!((slope / FIRM.at(s * s) - FIRM.steepness(s * s)).abs() < 1e-6);
+        }
+        assert_eq!(FIRM.steepness(5.0), 1.0);
+    }
+
+    #[test]
+    fn it_is_bounded_and_continuous_and_linear_at_first() {
+        assert_eq!(FIRM.at(0.0), 1.0);
+        assert!((FIRM.at(4.0 - 1e-9) - FIRM.at(4.0 + 1e-9)).abs() < 1e-8);
+        let wild = Firmness {
+            root: -100.0,
+            whole: 1e3,
+            reach: 1e9,
+        };
+        assert_eq!((wild.at(0.001), wild.at(1e6)), (LEAST, MOST));
+        assert!(Firmness::default().is_linear());
+        assert_eq!(Firmness::default().at(1.0), 1.0);
+        assert_eq!(Firmness::default().mean(1.0), 1.0);
+    }
+
+    #[test]
+    fn another_one_comes_within_some_ticks() {
+        let mut now = Firmness::default();
+        for _ in 0..50 {
+            now = now.faded(&FIRM, 1e-3);
+        }
+        assert!(now.at(4.0) > 1.0 + 0.6 * (FIRM.at(4.0) - 1.0) && now.at(4.0) < FIRM.at(4.0));
+    }
+}

@@ -1,0 +1,131 @@
+"""Forces that are other than a linear body's by its firmness: what is felt, held and given back."""
+
+import numpy as np
+import pytest
+from palpate_servo.harness import SteppedFingers
+from referees.energy_loops import books, random_loops
+from referees.led_tips import Tip, led, tip_of
+
+from palpate.core.contact.tool.tools import sphere
+from palpate.core.servo.session import drawn_loads, native_body, servo_on
+from palpate.core.servo.settings import Coupling, Settings
+
+MODULUS = 10_000.0
+DOWN = (0.025, 0.025, 0.046)
+# Of a point 4 mm in the middle of the cube's top: 1 + s/4 + s^2/4 and 1 - s/3, s its depth over that.
+FIRMER, SOFTER = (0.25, 0.25), (-1 / 3, 0.0)
+DEEP = 2.0
+# Ticks until another firmness is there, and how nearly.
+FADED, NEARLY = 1000, 1e-6
+
+
+def down(depth):
+    return np.array([[0.025, 0.025, 0.05 - depth]])
+
+
+def held_by(whole, depth):
+    """Elastic energy, J/Pa, of the linear press so deep."""
+    return 0.5 * depth * linear_force(whole, depth) / MODULUS
+
+
+def fingers_on(whole, start, firmness=None, settings=None):
+    fingers = SteppedFingers(whole, start, settings or Settings(MODULUS))
+    if firmness is not None:
+        unit = held_by(whole, 0.004)
+        root, square = firmness
+        fingers.set_firmness(root / np.sqrt(unit), square / unit, DEEP**2 * unit)
+    return fingers
+
+
+def linear_force(whole, depth):
+    fingers = fingers_on(whole, down(-0.001))
+    return fingers.follow(np.stack([down(depth)] * 3))[0][-1][0][2]
+
+
+@pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
+def test_the_force_is_that_much_firmer(whole, firmness):
+    fingers = fingers_on(whole, down(-0.001), firmness)
+    for depth in (0.0005, 0.002, 0.004, 0.012):
+        force = fingers.follow(np.stack([down(depth)] * FADED))[0][-1][0][2]
+        s = min(depth / 0.004, DEEP)
+        share = max(1.0 + firmness[0] * s + firmness[1] * s * s, 0.3)
+        assert force / linear_force(whole, depth) == pytest.approx(share, rel=NEARLY)
+        assert fingers.snapshot().firmness == pytest.approx(share, rel=NEARLY)
+
+
+def test_what_is_drawn_is_what_a_linear_body_shows(whole):
+    linear, firm = fingers_on(whole, down(-0.001)), fingers_on(whole, down(-0.001), FIRMER)
+    for fingers in (linear, firm):
+        fingers.follow(np.stack([down(0.004)] * FADED))
+    (nodes, forces), (firm_nodes, firm_forces) = (
+        drawn_loads(fingers.snapshot())[0] for fingers in (linear, firm)
+    )
+    np.testing.assert_array_equal(nodes, firm_nodes)
+    np.testing.assert_allclose(firm_forces, forces, rtol=1e-9)
+
+
+def test_it_comes_and_goes_without_a_jump(whole):
+    fingers = fingers_on(whole, down(-0.001))
+    before = fingers.follow(np.stack([down(0.004)] * 100))[0][-1][0][2]
+    unit = held_by(whole, 0.004)
+    fingers.set_firmness(0.25 / np.sqrt(unit), 0.25 / unit, 4.0 * unit)
+    forces = np.append(before, fingers.follow(np.stack([down(0.004)] * 500))[0][:, 0, 2])
+    assert forces[-1] / before == pytest.approx(1.5, rel=1e-3)
+    assert np.abs(np.diff(forces)).max() < 0.02 * before
+    fingers.set_firmness(0.0, 0.0, 0.0)
+    back = fingers.follow(np.stack([down(0.004)] * 1000))[0][:, 0, 2]
+    assert np.abs(np.diff(back)).max() < 0.02 * before
+    assert back[-1] == pytest.approx(before, rel=1e-6)
+
+
+def test_it_begins_anew_with_every_touch(whole):
+    fingers = fingers_on(whole, down(-0.001), FIRMER)
+    fingers.follow(np.stack([down(0.004)] * FADED))
+    fingers.follow(np.stack([down(-0.001)] * 2))
+    assert fingers.snapshot().firmness == 1.0
+    first = fingers.follow(np.stack([down(0.004)] * 2))[0][:, 0, 2]
+    np.testing.assert_allclose(first, linear_force(whole, 0.004), rtol=0.05)
+
+
+@pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
+@pytest.mark.parametrize("ticks", [40, 400])
+def test_in_and_out_gives_nothing(whole, firmness, ticks):
+    """As fast as 0.2 m/s: forces of a tick are those of the last one's depth."""
+    fingers = fingers_on(whole, down(-0.001), firmness)
+    fingers.follow(np.stack([down(0.001)] * FADED))
+    depths = 0.001 + 0.006 * np.sin(np.linspace(0.0, np.pi, ticks)) ** 2
+    depths = np.append(depths, np.linspace(0.001, -0.001, ticks))
+    into = np.append(np.linspace(-0.001, 0.001, ticks), depths)
+    path = np.stack([down(depth) for depth in into])
+    forces = fingers.follow(path)[0][:, 0, 2]
+    work = -np.sum(0.5 * (forces[1:] + forces[:-1]) * np.diff(path[:, 0, 2]))
+    assert work >= -1e-3 * np.abs(forces).max() * 0.007
+
+
+@pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
+@pytest.mark.parametrize("tool", [None, sphere(0.006)], ids=["point", "sphere"])
+@pytest.mark.parametrize("coupling", [None, Coupling(800.0, 4.0, passivity_control=True)])
+def test_no_closed_path_gives_energy(body, firmness, tool, coupling):
+    mesh, settings = body.mesh, Settings(MODULUS, coupling=coupling)
+    free = ~np.isin(mesh.surface_nodes, body.fixed)
+    nodes = mesh.nodes[mesh.surface_nodes]
+    surface = native_body(body, whole=True)
+    tip = Tip() if tool is None else tip_of(body, surface, tool)
+    found = []
+    for loop in random_loops(nodes, mesh.surface_local_triangles, free, 8, 18):
+        unit = 0.01 * loop.depth**2
+        told = firmness[0] / np.sqrt(unit), firmness[1] / unit, DEEP**2 * unit
+        follow = led(surface, settings, (loop,), (tip,), 3.0 if coupling else None, told)
+        found.append(books((loop,), follow))
+    found = [one for one in found if one is not None]
+    assert len(found) > 3
+    assert max((gain for one in found for gain in one.rounds), default=0.0) <= 1e-3
+    assert max(one.path for one in found) <= 1e-3
+
+
+def test_a_firmness_that_is_no_number_is_refused(whole):
+    servo = servo_on(whole, Settings(MODULUS))
+    with pytest.raises(ValueError, match="give finite numbers"):
+        servo.set_firmness(float("nan"), 0.0, 1.0)
+    with pytest.raises(ValueError, match="not below zero"):
+        servo.set_firmness(0.0, 0.0, -1.0)
