@@ -7,7 +7,7 @@ from .kinds import choice
 SHAPE_ITEMS = [
     ("LINEAR", "Linear", EXPLANATIONS["linear"], "", 0),
     ("TABLE", "Paper", EXPLANATIONS["paper"], "", 1),
-    ("ROTATION_STRAIN", "Rotation-Strain", EXPLANATIONS["rotation-strain"], "", 3),
+    ("ROTATION_STRAIN", "Real", EXPLANATIONS["real"], "", 3),
 ]
 # Held by older files and scripts only; no panel offers it.
 FORMER_ITEM = ("SERIES", "Series", str(SERIES_IS_PAPER), "", 2)

@@ -42,7 +42,7 @@ from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium
 
 LARGEST_SHARE_ON_BENDS = 0.5
-DEFAULT: ShapeName = "rotation-strain"
+DEFAULT: ShapeName = "real"
 
 
 @dataclass(frozen=True, eq=False)

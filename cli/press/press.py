@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,11 @@ from ...core.contact.equations import CONTACT_MODES
 from ...core.contact.place import compliance_between
 from ...core.contact.press import ContactSettings
 from ...core.contact.single_press import press_points
-from ...core.contact.touches import PointTouch, contact_displacement
+from ...core.contact.touches import PointTouch, ToolTouch, contact_displacement
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import atomic_file
-from ...core.shape.meeting import FingerLoad, settled
+from ...core.shape.felt import felt, loads_of
+from ...core.shape.meeting import settled
 from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
@@ -30,6 +32,10 @@ from .press_tool import pressed_tools, tool_figures, tool_summary
 from .tool_option import KINDS, tool_from
 
 HELP = "press a body with one or several fingers and read the forces"
+TOO_DEEP = (
+    "the body finds no rest so deep by its material's law; the force is as firm as where it did"
+)
+One = TypeVar("One", PointTouch, ToolTouch)
 DESCRIPTION = (
     "Press a body and print the force on each finger, where it touches, and how "
     "far the surface moves."
@@ -78,8 +84,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         choices=(*SHAPES, *FORMER_NAMES),
         default="linear",
         help="how the deformed shape is computed under the forces: linear elasticity, the paper's "
-        "(16) (paper; formerly table and series), or linear elasticity bent by the rotations it "
-        "means and relaxed (default: linear)",
+        "(16) (paper; formerly table and series), or the material's own law, which tells the "
+        "force, too (real; formerly rotation-strain) (default: linear)",
     )
     parser.add_argument(
         "--displacements",
@@ -105,9 +111,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: float) -> int:
     settings = ContactSettings(young_modulus, mode=arguments.mode or "consistent")
-    touches = press_points(body, arguments.at, arguments.by, settings)
-    loads = [FingerLoad(touch.triangle, touch.nodal_forces) for touch in touches]
-    displacements = _deformed(arguments, body, loads, young_modulus)
+    linear = press_points(body, arguments.at, arguments.by, settings)
+    # The paper's contact stays as published.
+    firm = settings.mode == "consistent"
+    touches, displacements = _deformed(arguments, body, linear, young_modulus, firm=firm)
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
     common = _common_figures(arguments, displacements, young_modulus)
     common |= {"mode": settings.mode}
@@ -121,9 +128,8 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
         raise PalpateError("--mode: it is about points; leave it out with --tool")
     tool = tool_from(arguments.tool)
     settings = ContactSettings(young_modulus, arguments.friction or 0.0)
-    touches = pressed_tools(body, tool, arguments.at, arguments.by, settings)
-    loads = [FingerLoad(touch.nodes, touch.nodal_forces) for touch in touches]
-    displacements = _deformed(arguments, body, loads, young_modulus)
+    linear = pressed_tools(body, tool, arguments.at, arguments.by, settings)
+    touches, displacements = _deformed(arguments, body, linear, young_modulus)
     common = _common_figures(arguments, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     _print(arguments, figures, common)
@@ -164,12 +170,25 @@ def _print(
 
 
 def _deformed(
-    arguments: argparse.Namespace, body: SoftBody, loads: list[FingerLoad], young_modulus: float
-) -> NDArray[np.float64]:
-    """Displacements (n, 3) under the fingers' forces, written where that is asked for."""
-    chosen = shape(body, arguments.shape, arguments.body)
+    arguments: argparse.Namespace,
+    body: SoftBody,
+    linear: tuple[One, ...],
+    young_modulus: float,
+    *,
+    firm: bool = True,
+) -> tuple[tuple[One, ...], NDArray[np.float64]]:
+    """Touches as they are felt, from ``linear`` ones, and displacements (n, 3), written where that
+    is asked for; ``firm`` where the shape tells the forces, too.
+    """
+    chosen, loads = shape(body, arguments.shape, arguments.body), loads_of(linear)
+    touches = linear
     try:
         displacements = settled(body, chosen, loads, young_modulus).displacements
+        if firm:
+            pressed = felt(chosen, linear, young_modulus)
+            touches = pressed.touches
+            if not pressed.firmness.is_whole:
+                print(f"palpate: warning: {TOO_DEEP}", file=sys.stderr)
     finally:
         chosen.close()
         if chosen.notice:
@@ -182,7 +201,7 @@ def _deformed(
     if arguments.displacements is not None:
         with atomic_file(arguments.displacements) as file:
             np.save(file, displacements)
-    return displacements
+    return touches, displacements
 
 
 def _common_figures(

@@ -11,7 +11,7 @@ from palpate_servo import Servo, Snapshot
 from ..body.soft_body import SoftBody
 from ..shape.rotation_strain.finger_load import FingerLoad
 from ..shape.rotation_strain.firmness import Firmness
-from ..shape.shapes import Shape
+from ..shape.shapes import Shape, firmness_of
 
 # It is looked for a little deeper than the fingers are: they may go on.
 AHEAD = 1.2
@@ -55,7 +55,7 @@ class Firming:
         if loads and shape.ready == 1.0 and not _alike(loads, self._looked_at):
             self._looked_at = loads
             deeper = [FingerLoad(one.nodes, AHEAD * one.forces, one.sticks) for one in loads]
-            self._finding = self._worker.submit(shape.firmness, deeper, young_modulus)
+            self._finding = self._worker.submit(firmness_of, shape, deeper, young_modulus)
 
     def close(self) -> None:
         """End; does not wait."""

@@ -71,13 +71,6 @@ class Shape(Protocol):
         """
         ...
 
-    def firmness(self, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:  # noqa: ARG002
-        """How much more firmly than a linear body this one presses back under these linear loads.
-
-        May take some tenths of a second; thread-safe.
-        """
-        return Firmness()
-
     def wait_for(self, nodes: NDArray[np.int64]) -> None:
         """Return when all is there that forces on these nodes (k,) of the mesh need.
 
@@ -151,6 +144,21 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
     if choice == "series":
         return PaperShape(body, body_file, remark=SERIES_IS_PAPER)
     return MAKERS[shape_name(choice)](body, body_file)
+
+
+def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:
+    """How much more firmly than a linear body this one presses back under these linear loads.
+
+    May take some tenths of a second; thread-safe.
+
+    Raises
+    ------
+    PalpateError
+        The shape cannot be computed.
+    """
+    if isinstance(shape, RotationStrainShape):
+        return shape.firmness(loads, young_modulus)
+    return Firmness()
 
 
 def shape_name(choice: str) -> ShapeName:

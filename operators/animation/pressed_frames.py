@@ -15,6 +15,7 @@ from ...core.contact.press import ContactSettings, Press
 from ...core.contact.touches import Touch
 from ...core.errors import PalpateError
 from ...core.imprint.yielding import Yielding
+from ...core.shape.felt import felt, loads_of
 from ...core.shape.meeting import settled
 from ...core.shape.shapes import Shape
 from ..imprint.surface_imprint import SurfaceImprint
@@ -22,7 +23,7 @@ from ..layer import place_marks
 from ..object.drawn_body import DrawnBody
 from ..place import touched_place
 from ..place.evaluation import evaluated
-from ..press.press_once import loads_of, pressing_tools
+from ..press.press_once import pressing_tools
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of
 from .pressers import Presser, pressers_of
@@ -86,14 +87,14 @@ class AnimatedPress:
         touches = self._press.to(
             [one.pose(frame) for one, frame in zip(found, frames, strict=True)]
         )
+        loads, moved = loads_of(touches), None
+        if loads:
+            met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
+            touches = felt(self.shape, touches, chosen.young_modulus).touches
+            moved = self.drawn.drawn_displacement(met.displacements, pressing_tools(touches))
         forces = [
             frame.turn_to_world(made.force) for frame, made in zip(frames, touches, strict=True)
         ]
-        loads = loads_of(touches)
-        moved = None
-        if loads:
-            met = settled(self.drawn.body, self.shape, loads, chosen.young_modulus)
-            moved = self.drawn.drawn_displacement(met.displacements, pressing_tools(touches))
         return PressedFrame(graph.scene.frame_current, touches, np.array(forces), moved)
 
     def _go_along(self, graph: bpy.types.Depsgraph) -> None:

@@ -16,7 +16,8 @@ from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch, Touch
 from ...core.errors import PalpateError
-from ...core.shape.meeting import FingerLoad, settled
+from ...core.shape.felt import felt, loads_of
+from ...core.shape.meeting import settled
 from ..imprint import kept_imprint
 from ..layer import place_marks
 from ..object.drawn_body import DrawnBody, open_pinned
@@ -111,6 +112,8 @@ def press_several(
     made = _touches(thing, scene, drawn, tip.tool, places, inward, frames)
     with closing_shape(thing, drawn) as shape:
         met = settled(drawn.body, shape, loads_of(made), young_modulus)
+        if contact_mode(scene) != "paper":
+            made = felt(shape, made, young_modulus).touches
     moved = drawn.drawn_displacement(met.displacements, pressing_tools(made))
     borne = tractions_of(thing, drawn, moved, patches_of(made))
     return Pressed(
@@ -157,11 +160,6 @@ def _touches(
     ]
     starts = [set_down(body, tool, *one) for one in zip(nearest, turns, strict=True)]
     return press_tools(body, tool, starts, inward, settings)
-
-
-def loads_of(touches: Sequence[Touch]) -> list[FingerLoad]:
-    """Loads of all pressing fingers on the body."""
-    return [FingerLoad(one.nodes, one.nodal_forces) for one in touches if len(one.nodes)]
 
 
 def pressing_tools(touches: Sequence[Touch]) -> tuple[PressingTool, ...]:

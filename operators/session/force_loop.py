@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...core.contact.tool.pose import Pose
 from ...core.errors import PalpateError
 from ...core.rest.prop import WORLD
+from ...core.servo.firming import Firming
 from ...core.servo.session import (
     Body,
     HaplyDevice,
@@ -25,6 +26,7 @@ from ...core.servo.session import (
     native_tool,
     servo_on,
 )
+from ...core.shape.shapes import Shape
 from ...simulated.simulated_process import SimulatedDevice
 from ..device import device_source
 from ..device.device_source import DeviceFrame
@@ -59,9 +61,13 @@ class ForceLoop:
     second_simulated: SimulatedDevice | None = None
     port: str = ""
     figures: LoopFigures = field(default_factory=LoopFigures)
+    firming: Firming = field(init=False)
     _enabled: bool = True
     _turns: dict[int, NDArray[np.float64]] = field(default_factory=dict)
     _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.firming = Firming(self.servo, self.drawn.body)
 
     @classmethod
     def prepare(
@@ -229,8 +235,14 @@ class ForceLoop:
         self.recorder.follow(snapshot.time)
         return snapshot
 
+    def firm(self, snapshot: Snapshot, shape: Shape) -> None:
+        """Press as firmly as the drawn shape says, once that is known."""
+        with servo_errors():
+            self.firming.follow(snapshot, shape, self.settings.servo.young_modulus)
+
     def stop(self) -> None:
         """Stop thread and simulated devices with zero force; keep the recording."""
+        self.firming.close()
         try:
             self.servo.stop()
             recording.keep(self.recorder)

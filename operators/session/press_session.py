@@ -101,7 +101,7 @@ class PressSession(PressedObject):
         self._watch_faults(snapshot)
         self._report_problems(loop)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
-            self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus)
+            loop.firm(snapshot, self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus))
         return moved
 
     def switch_force(self) -> None:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from ...core.contact.tool.tool_surface import surface_and_correction
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
-from ...core.shape.meeting import FingerLoad
+from ...core.shape.rotation_strain.finger_load import FingerLoad
+from ...core.shape.shapes import Shape
 from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
 from ..imprint.surface_imprint import SurfaceImprint, yielding_of
@@ -74,9 +75,13 @@ class SeenBody:
             return nodes
         return nodes + self.drawn.node_displacements(self.displacements)
 
-    def draw(self, thing: bpy.types.Object, snapshot: Snapshot, young_modulus: float) -> None:
-        """Draw a tick, unless it is already drawn."""
+    def draw(self, thing: bpy.types.Object, snapshot: Snapshot, young_modulus: float) -> Shape:
+        """Draw a tick, unless it is already drawn; the shape that is drawn."""
         self.shape.follow(chosen_shape(thing))
+        self._draw(thing, snapshot, young_modulus)
+        return self.shape.made
+
+    def _draw(self, thing: bpy.types.Object, snapshot: Snapshot, young_modulus: float) -> None:
         fingers = tuple(
             (finger.touching, finger.nodes.tobytes(), finger.nodal_forces.tobytes())
             for finger in snapshot.fingers

@@ -17,7 +17,8 @@ import bpy
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.servo.session import Snapshot, drawn_loads
-from ...core.shape.meeting import FingerLoad, Meeting, Met
+from ...core.shape.meeting import Meeting, Met
+from ...core.shape.rotation_strain.finger_load import FingerLoad
 from ...core.shape.shapes import LinearShape, Shape, shape
 from ..object.drawn_body import DrawnBody
 
@@ -62,6 +63,11 @@ class DrawnShape:
     def notice(self) -> str:
         """Reason why a table's file could not be used; empty otherwise."""
         return self._shape.notice
+
+    @property
+    def made(self) -> Shape:
+        """The shape that is drawn: the linear one until the chosen one is made."""
+        return self._shape
 
     def follow(self, name: str) -> None:
         """Draw this shape as soon as it is ready. Does not wait."""

@@ -48,7 +48,7 @@ def test_bake_saves_a_file_that_can_be_pressed(figures_of, scene):
     bent = figures_of(f"{PRESS} --shape rotation-strain")
     pressed = figures_of(f"{PRESS} --keep")
     assert 0 < pressed["force"][2] == pytest.approx(bent["force"][2])
-    assert (bent["shape"], pressed["shape"]) == ("rotation-strain", "linear")
+    assert (bent["shape"], pressed["shape"]) == ("real", "linear")
     assert bent["max_displacement"] != pressed["max_displacement"]
     bpy.ops.wm.open_mainfile(filepath=str(scene))
     assert bpy.data.objects["Prop"].modifiers.keys() == [pressed["layer"]] == ["Press 1"]

@@ -9,7 +9,8 @@ from palpate.cli.press.tool_option import tool_from
 from palpate.core.contact.press import ContactSettings
 from palpate.core.contact.single_press import press_points, touch_nearest
 from palpate.core.contact.tool.tools import plate, rod
-from palpate.core.shape.meeting import FingerLoad, settled
+from palpate.core.shape.meeting import settled
+from palpate.core.shape.rotation_strain.finger_load import FingerLoad
 from palpate.core.shape.shapes import MAKERS, shape
 
 

@@ -1,10 +1,10 @@
 """How much more firmly a body of its material's law presses back than a linear one.
 
-A linear body pressed to some depth is under forces f and moved by u. The other is taken to the same
-depth: under forces of the same kind (the ones of a tool in proportion, those of a point that sticks
-turned as they have to be) that move what is pressed as far, each by the work f would do on it. The
-work along a straight way then tells the force: G times the linear one. It is found at half the depth
-and at the whole, and between goes as ::
+A linear body pressed to some depth is under forces f and moved by u. The other is taken to the
+same depth: under forces of the same kind (the ones of a tool in proportion, those of a point that
+sticks turned as they have to be) that move what is pressed as far, each by the work f would do on
+it. The work along a straight way then tells the force: G times the linear one. It is found at half
+the depth and at the whole, and between goes as ::
 
     G(s) = 1 + a s + b s^2,    s^2 = elastic energy of the linear press over that of the whole one
 
@@ -32,7 +32,7 @@ DEPTHS = (0.5, 1.0)
 # Where it is taken for found: work that is missed, as a share of all; and rest.
 CLOSE, REST = 0.004, 0.002
 # Steps towards rest, and tries of forces.
-MOST_STEPS, MOST_TRIES = 60, 10
+MOST_STEPS, MOST_TRIES = 100, 16
 # Forces change by no more than this share of the linear ones in a try.
 LARGEST_CHANGE = 0.4
 # Bounds of what is believed.
@@ -154,7 +154,8 @@ class _Press:
     def to(self, depth: float, guess: float) -> float | None:
         """G at a share of the depth; None where no forces that rest were found."""
         wanted, forces = depth * self.ways, guess * depth * self.linear
-        response: Array = np.linalg.pinv(self.compliance, rcond=1e-9, hermitian=True)
+        inverse = np.linalg.pinv(self.compliance, rcond=1e-9, hermitian=True)
+        response = np.asarray(inverse, dtype=np.float64)
         scale = math.sqrt(float(wanted @ response @ wanted))
         last: tuple[Array, Array] | None = None
         for _ in range(MOST_TRIES):
@@ -162,7 +163,7 @@ class _Press:
             rest = self.body.relaxation.at_rest(load, REST, MOST_STEPS)
             if rest.left > 5.0 * REST:
                 return None
-            missed = wanted - np.einsum("pfi,fi->p", self.patterns, rest.displacements)
+            missed: Array = wanted - np.einsum("pfi,fi->p", self.patterns, rest.displacements)
             if last is not None:
                 response = _learnt(response, forces - last[0], last[1] - missed)
             if np.sqrt(abs(missed @ response @ missed)) <= CLOSE * scale:

@@ -100,7 +100,7 @@ class RotationStrainShape:
         return made.displacements(np.asarray(nodes).reshape(-1), forces)
 
     def firmness(self, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:
-        """See :class:`.shapes.Shape`; linear until it is prepared, and of a body on a lattice."""
+        """See :func:`.shapes.firmness_of`; linear until prepared, and of a body on a lattice."""
         made = self._made.result() if self._made.done() else None
         if not isinstance(made, _OnOwnNodes):
             return Firmness()

@@ -13,7 +13,7 @@ from soft_scene import begin_pressed, cube, part, soft_cube
 SHAPES = {
     "LINEAR": "linear",
     "TABLE": "paper",
-    "ROTATION_STRAIN": "rotation-strain",
+    "ROTATION_STRAIN": "real",
 }
 # Nodes, tetrahedra and free surface nodes of larger bodies.
 LARGE = (20_000, 103_000, 6_400)

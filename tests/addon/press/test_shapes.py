@@ -29,7 +29,7 @@ from soft_scene import (
 NAMES = {
     "LINEAR": "linear",
     "TABLE": "paper",
-    "ROTATION_STRAIN": "rotation-strain",
+    "ROTATION_STRAIN": "real",
 }
 
 

@@ -9,7 +9,8 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.press import ContactSettings
 from palpate.core.contact.single_press import touch_nearest
 from palpate.core.contact.touches import contact_displacement
-from palpate.core.shape.meeting import FingerLoad, Meeting, settled
+from palpate.core.shape.meeting import Meeting, settled
+from palpate.core.shape.rotation_strain.finger_load import FingerLoad
 from palpate.core.shape.shapes import LinearShape
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium

@@ -11,8 +11,7 @@ from palpate.core.servo.session import drawn_loads, native_body, servo_on
 from palpate.core.servo.settings import Coupling, Settings
 
 MODULUS = 10_000.0
-DOWN = (0.025, 0.025, 0.046)
-# Of a point 4 mm in the middle of the cube's top: 1 + s/4 + s^2/4 and 1 - s/3, s its depth over that.
+# Of a point in the middle of the cube's top: 1 + s/4 + s^2/4 and 1 - s/3, s its depth over 4 mm.
 FIRMER, SOFTER = (0.25, 0.25), (-1 / 3, 0.0)
 DEEP = 2.0
 # Ticks until another firmness is there, and how nearly.

@@ -1,0 +1,50 @@
+"""Touches as a body of its shape's law presses back: the linear ones, by its firmness."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from ..contact.touches import PointTouch, ToolTouch
+from .rotation_strain.finger_load import FingerLoad
+from .rotation_strain.firmness import Firmness
+from .shapes import Shape, firmness_of
+
+One = TypeVar("One", PointTouch, ToolTouch, PointTouch | ToolTouch)
+
+
+@dataclass(frozen=True, eq=False)
+class Felt(Generic[One]):
+    """What fingers feel.
+
+    Attributes
+    ----------
+    touches : with the forces that are felt.
+    firmness : by how much they are other than the linear ones, as a function of the depth.
+    """
+
+    touches: tuple[One, ...]
+    firmness: Firmness
+
+
+def loads_of(touches: Sequence[PointTouch | ToolTouch]) -> list[FingerLoad]:
+    """Loads of all fingers that press, by the linear force law."""
+    return [
+        FingerLoad(one.nodes, one.nodal_forces, sticks=isinstance(one, PointTouch))
+        for one in touches
+        if len(one.nodes)
+    ]
+
+
+def felt(shape: Shape, touches: Sequence[One], young_modulus: float) -> Felt[One]:
+    """The linear ``touches`` of all fingers on a body, with the forces that its shape tells.
+
+    Raises
+    ------
+    PalpateError
+        They cannot be computed.
+    """
+    firmness = firmness_of(shape, loads_of(touches), young_modulus)
+    share = firmness.deepest
+    return Felt(tuple(one.times(share) for one in touches), firmness)

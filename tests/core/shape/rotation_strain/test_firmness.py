@@ -1,0 +1,128 @@
+"""Firmness of presses: what a body of its law needs to be pressed as deep as a linear one."""
+
+import math
+
+import numpy as np
+import pytest
+from bodies.bare_body import bare_body, beam_mesh
+
+from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.shape.rotation_strain.finger_load import FingerLoad
+from palpate.core.shape.rotation_strain.firmness import FirmBody, Firmness
+from palpate.core.shape.rotation_strain.relaxation import relaxation
+from palpate.core.shape.solid.free_solid import FreeSolid
+from palpate.core.shape.solid.newton import equilibrium
+
+LENGTH = 5.0
+
+
+def firm_body(mesh, fixed, poisson_ratio=0.45, formulation="smoothed"):
+    solid = FreeSolid.of(bare_body(mesh, fixed, poisson_ratio, formulation))
+    return FirmBody(solid, relaxation(solid))
+
+
+@pytest.fixture(scope="module")
+def bar():
+    return firm_body(*beam_mesh(4, LENGTH, 0))
+
+
+@pytest.fixture(scope="module")
+def block():
+    return firm_body(*paper_cube(1.0, 6))
+
+
+def at_node(body, place, way):
+    """Load of a point that holds the node nearest to ``place`` moved by ``way``, linearly."""
+    node = np.linalg.norm(body.solid.positions - place, axis=1).argmin()
+    columns = []
+    for axis in np.eye(3):
+        forces = np.zeros((body.solid.node_count, 3))
+        forces[node] = axis
+        columns.append(body.solid.linear(forces)[node])
+    force = np.linalg.solve(np.stack(columns, axis=1), way)
+    return node, FingerLoad(body.solid.free[[node]], force[None], sticks=True)
+
+
+def spread(body, size):
+    """Load of something broad on the middle of the top that goes in by ``size``."""
+    away = np.linalg.norm(body.solid.positions - [0.5, 0.5, 1.0], axis=1)
+    nodes = np.flatnonzero(away < 0.4)
+    forces = np.tile([0.0, 0.0, -1.0], (len(nodes), 1))
+    whole = body.solid.on_free_nodes(body.solid.free[nodes], forces)
+    forces *= size / np.abs(body.solid.linear(whole)).max()
+    return FingerLoad(body.solid.free[nodes], forces)
+
+
+def energy_of(body, load):
+    whole = body.solid.on_free_nodes(load.nodes, load.forces)
+    return 0.5 * float((whole * body.solid.linear(whole)).sum())
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.0, 0.5), (0.0, 0.0, 1.2), (-0.2, 0.3, 1.0)])
+def test_a_point_that_bends_a_bar_feels_what_newtons_method_finds(bar, way):
+    node, load = at_node(bar, [LENGTH, 0.5, 1.0], np.array(way))
+    firmness = bar.under([load])
+    assert firmness.is_whole
+    # Newton's method under forces, until their node is where the linear body has it.
+    forces = load.forces[0] * firmness.deepest
+    whole = np.zeros((bar.solid.node_count, 3))
+    columns = [
+        bar.solid.linear(np.where(np.arange(len(whole))[:, None] == node, axis, 0.0))[node]
+        for axis in np.eye(3)
+    ]
+    response = np.linalg.inv(np.stack(columns, axis=1))
+    for _ in range(40):
+        whole[node] = forces
+        start = equilibrium(bar.solid, whole).displacements[node]
+        missed = np.array(way) - start
+        if np.linalg.norm(missed) < 1e-4 * np.linalg.norm(way):
+            break
+        forces = forces + 0.5 * response @ missed
+    true = float(forces @ way) / float(load.forces[0] @ way)
+    assert firmness.deepest == pytest.approx(true, rel=0.01)
+    assert abs(true - 1.0) > 0.01
+
+
+def test_small_presses_are_linear_and_deep_ones_of_rubber_firmer(block):
+    energies = []
+    for size in (1e-4, 0.05, 0.25):
+        load = spread(block, size)
+        energies.append((block.under([load]).deepest, energy_of(block, load)))
+    assert energies[0][0] == pytest.approx(1.0, abs=5e-3)
+    assert 1.0 < energies[1][0] < energies[2][0] < 2.0
+    assert energies[1][1] < energies[2][1]
+
+
+def test_what_is_known_of_a_deep_press_tells_of_those_on_the_way(block):
+    deep, half = (block.under([spread(block, size)]) for size in (0.24, 0.12))
+    assert deep.at(half.reach) == pytest.approx(half.deepest, abs=0.01)
+    assert deep.at(0.0) == 1.0
+    assert deep.at(math.inf) == deep.deepest
+
+
+def test_several_fingers_have_one_firmness(block):
+    load = spread(block, 0.15)
+    parts = [
+        FingerLoad(load.nodes[side], load.forces[side])
+        for side in (slice(None, None, 2), slice(1, None, 2))
+    ]
+    whole, together = block.under([load]), block.under(parts)
+    assert together.deepest == pytest.approx(whole.deepest, abs=0.02)
+    assert together.reach == pytest.approx(whole.reach, rel=1e-6)
+
+
+def test_without_a_load_the_body_is_linear(block):
+    none = FingerLoad(block.solid.free[:1], np.zeros((1, 3)))
+    assert block.under([]) == block.under([none]) == Firmness()
+
+
+def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
+    monkeypatch.setattr("palpate.core.shape.rotation_strain.firmness.MOST_STEPS", 0)
+    found = block.under([spread(block, 0.3)])
+    assert not found.is_whole
+    assert found.deepest == 1.0
+
+
+def test_it_is_bounded():
+    assert Firmness(100.0, 0.0, 1.0).at(1.0) == 3.0
+    assert Firmness(-100.0, 0.0, 1.0).at(1.0) == 0.3
