@@ -147,3 +147,24 @@ def test_press_writes_the_shape_that_is_asked_for(name, cube_file, tmp_path, pal
     wanted = settled(cube, made, loads, cube.young_modulus).displacements
     made.close()
     np.testing.assert_allclose(np.load(out), wanted, atol=1e-6 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("tip", [(), ("--tool", "sphere:0.012")], ids=["point", "sphere"])
+def test_real_is_felt_and_seen(tip, cube_file, figures_of):
+    words = ["press", cube_file, "--at", 0.025, 0.025, 0.05, "--by", 0, 0, "-12e-3", *tip]
+    linear, real = (figures_of(*words, "--shape", name) for name in ("linear", "real"))
+    assert real["shape"] == figures_of(*words, "--shape", "rotation-strain")["shape"] == "real"
+    ratio = np.linalg.norm(real["force"]) / np.linalg.norm(linear["force"])
+    assert 0.01 < abs(ratio - 1.0) < 1.0
+    np.testing.assert_allclose(
+        np.sum(real["nodal_forces"], axis=0), -np.array(real["force"]), atol=1e-9
+    )
+    shallow = [*words[:6], "--by", 0, 0, "-1e-6", *tip]
+    one, other = (figures_of(*shallow, "--shape", name)["force"] for name in ("linear", "real"))
+    np.testing.assert_allclose(other, one, rtol=5e-3, atol=1e-9)
+
+
+def test_the_papers_contact_stays_as_published(cube_file, figures_of):
+    words = ["press", cube_file, "--at", 0.025, 0.025, 0.05, "--by", 0, 0, "-12e-3"]
+    words += ["--mode", "paper", "--shape"]
+    assert figures_of(*words, "real")["force"] == figures_of(*words, "linear")["force"]

@@ -27,8 +27,8 @@ from .relaxation import Relaxation
 
 Array = NDArray[np.float64]
 
-# Shares of the depth at which it is looked for.
-DEPTHS = (0.5, 1.0)
+# Shares of the depth at which it is looked for; where nothing is found at the last, between.
+DEPTHS, BETWEEN = (0.5, 1.0), 0.75
 # Where it is taken for found: work that is missed, as a share of all; and rest.
 CLOSE, REST = 0.004, 0.002
 # Steps towards rest, and tries of forces.
@@ -83,11 +83,12 @@ class FirmBody:
         if found is None or found.energy <= 0.0:
             return Firmness()
         known = [(0.0, 1.0)]
-        for depth in DEPTHS:
+        for depth in (*DEPTHS, BETWEEN):
             share = found.to(depth, known[-1][1])
-            if share is None:
+            if share is not None:
+                known.append((depth, min(max(share, LEAST), MOST)))
+            if known[-1][0] == DEPTHS[-1] or len(known) == 1:
                 break
-            known.append((depth, min(max(share, LEAST), MOST)))
         return _through(known, found.energy)
 
 

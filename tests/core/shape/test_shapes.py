@@ -28,7 +28,7 @@ def test_every_name_is_explained_in_a_line():
 
 
 def test_an_unknown_name_is_refused_with_those_there_are(cube):
-    with pytest.raises(PalpateError, match=r"'round' is unknown; give linear, .* or rotation"):
+    with pytest.raises(PalpateError, match=r"'round' is unknown; give linear, .* or real"):
         shape(cube, "round")
 
 
