@@ -32,6 +32,7 @@ class Firming:
         default_factory=lambda: ThreadPoolExecutor(1, "palpate-firmness")
     )
     _told: Firmness = LINEAR
+    _shape: Shape | None = None
     _looked_at: tuple[FingerLoad, ...] = ()
 
     def follow(self, snapshot: Snapshot, shape: Shape, young_modulus: float) -> None:
@@ -43,14 +44,16 @@ class Firming:
             What was looked for cannot be computed.
         """
         loads = pressing(self.body, snapshot)
-        if not loads:
+        is_other, self._shape = shape is not self._shape, shape
+        if not loads or is_other:
             self._looked_at = ()
             self._tell(LINEAR)
         if self._finding is not None:
             if not self._finding.done():
                 return
             found, self._finding = self._finding.result(), None
-            if loads:
+            # What another shape said, or of another touch, is looked for anew.
+            if self._looked_at:
                 self._tell(found)
         if loads and shape.ready == 1.0 and not _alike(loads, self._looked_at):
             self._looked_at = loads

@@ -47,7 +47,8 @@ def test_bake_saves_a_file_that_can_be_pressed(figures_of, scene):
     assert len(list((scene.parent / "palpate").iterdir())) == 1
     bent = figures_of(f"{PRESS} --shape rotation-strain")
     pressed = figures_of(f"{PRESS} --keep")
-    assert 0 < pressed["force"][2] == pytest.approx(bent["force"][2])
+    assert 0 < pressed["force"][2] == pytest.approx(bent["force"][2], rel=0.2)
+    assert pressed["force"][2] != bent["force"][2]
     assert (bent["shape"], pressed["shape"]) == ("real", "linear")
     assert bent["max_displacement"] != pressed["max_displacement"]
     bpy.ops.wm.open_mainfile(filepath=str(scene))

@@ -51,6 +51,14 @@ def test_it_presses_as_the_command_line_does(cube_body, servo, real, eventually)
         return np.linalg.norm(force - true.force) < 0.02 * np.linalg.norm(true.force)
 
     eventually(is_firm, "the force of the material's law")
+
+    def is_linear():
+        snapshot = servo.snapshot()
+        firming.follow(snapshot, LinearShape(cube_body), cube_body.young_modulus)
+        return np.allclose(snapshot.contact_force, linear.force, rtol=1e-6, atol=1e-9)
+
+    eventually(is_linear, "the linear force again, of another shape")
+    eventually(is_firm, "and the other one")
     servo.set_target(ABOVE)
     eventually(lambda: not servo.snapshot().touching)
     firming.follow(servo.snapshot(), real, cube_body.young_modulus)

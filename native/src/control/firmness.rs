@@ -126,6 +126,6 @@ mod tests {
         for _ in 0..50 {
             now = now.faded(&FIRM, 1e-3);
         }
-        assert!(now.at(4.0) > 1.0 + 0.6 * (FIRM.at(4.0) - 1.0) && now.at(4.0) < FIRM.at(4.0));
+        assert!(now.at(4.0) > 1.0 + 0.3 * (FIRM.at(4.0) - 1.0) && now.at(4.0) < FIRM.at(4.0));
     }
 }
