@@ -69,7 +69,7 @@ AGREEMENT = 0.08
 # The real force: to half a radius and a fifth of the thickness, and beyond.
 NEAR, FAR = 0.05, 0.10
 # Presses by which it is farther off: no rest was found so deep, where a point crushes the node it
-# presses or turns a part aside, and under a wall by two fifths; a wall on the mouse's nose bends it.
+# presses or turns a part aside, and under a wall by two fifths; a wall on the mouse bends its nose.
 BEYOND = (
     "cube, wall, 0.4",
     "mouse-1.7k, wall, 0.2",
