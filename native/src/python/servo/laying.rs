@@ -5,20 +5,21 @@ use std::sync::Arc;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::control::firmness::Firmness;
 use crate::python::rest::prop::Prop;
 use crate::python::servo::refusals::check_finger;
+use crate::python::servo::settings::firmness;
 use crate::python::servo::thread::Servo;
 use crate::python::tool::made::{GivenTool, made, tip};
 use crate::servo::paced::locked;
 
 impl Servo {
     /// Has the body be so firm.
-    pub(super) fn firm(&self, firmness: Firmness) {
-        let settings = locked(&self.settings).firm(firmness);
+    pub(super) fn firm(&self, root: f64, whole: f64, reach: f64) -> PyResult<()> {
+        let settings = locked(&self.settings).firm(firmness(root, whole, reach)?);
         if let Some(running) = self.current() {
             running.set(settings);
         }
+        Ok(())
     }
 
     /// Gives a finger a tool, or makes it a point (none).

@@ -265,6 +265,7 @@ impl Snapshot {
         let fingers: Vec<_> = fingers.map(|one| one.seen_from(&self.placement)).collect();
         let first = fingers[0].clone();
         let told = Self {
+            firmness: self.firmness,
             fingers,
             placement: self.placement,
             loads: self.loads.clone(),

@@ -18,7 +18,7 @@ use crate::python::rest::prop::Prop;
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
 use crate::python::servo::refusals::{NOT_WHOLE, check_kept};
 use crate::python::servo::samples::{structured, structured_pieces};
-use crate::python::servo::settings::{Chosen, Given, firmness, options};
+use crate::python::servo::settings::{Chosen, Given, options};
 use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::python::servo::standing::Standing;
 use crate::python::tool::made::{GivenTool, MadeTool};
@@ -102,8 +102,7 @@ impl Servo {
     }
 
     fn set_firmness(&self, root: f64, whole: f64, reach: f64) -> PyResult<()> {
-        self.firm(firmness(root, whole, reach)?);
-        Ok(())
+        self.firm(root, whole, reach)
     }
 
     fn start(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<()> {
