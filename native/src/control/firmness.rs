@@ -3,7 +3,9 @@
 //! Forces of the linear contact times G, a function of the elastic energy W that the linear contact holds
 //! (at unit modulus, J/Pa):
 //!
-//!     G(W) = 1 + root sqrt(W) + whole W          to W = reach, beyond which it stays
+//! ```text
+//! G(W) = 1 + root sqrt(W) + whole W          to W = reach, beyond which it stays
+//! ```
 //!
 //! What is held is then the integral of G over W, a function of the fingers' poses alone, so that nothing is
 //! gained at one place; small presses are linear. Whoever relaxes the body under the forces of a touch finds
@@ -63,7 +65,8 @@ impl Firmness {
     /// A tick of `dt` s nearer to another.
     #[must_use]
     pub fn faded(&self, to: &Self, dt: f64) -> Self {
-        let share = dt / (FADING + dt);
+        // A number also where the time between ticks is none or has no end.
+        let share = 1.0 / (1.0 + FADING / dt);
         let between = |from: f64, to: f64| from + (to - from) * share;
         Self {
             root: between(self.root, to.root),

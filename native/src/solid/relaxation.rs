@@ -3,7 +3,9 @@
 //! The energy of body and load is minimised as a function of the *linear* displacement v that is warped
 //! to u = W(v):
 //!
-//!     p(v) = U(W(v)) - F . W(v)
+//! ```text
+//! p(v) = U(W(v)) - F . W(v)
+//! ```
 //!
 //! In these coordinates it is nearly the quadratic function v.Kv / 2 - F.v whatever the rotations, and
 //! quasi-Newton steps from K^-1 come close in very few: where steps in u have to undo each rotation's false

@@ -93,8 +93,7 @@ impl Servo {
 
     fn set(&self, settings: Given) -> PyResult<()> {
         let chosen = Chosen::checked(&settings)?;
-        let mut standing = locked(&self.settings);
-        let settings = standing.choose(chosen);
+        let settings = locked(&self.settings).choose(chosen);
         if let Some(running) = self.current() {
             running.set(settings);
         }
