@@ -14,6 +14,7 @@ MODULUS = 10_000.0
 # Of a point in the middle of the cube's top: 1 + s/4 + s^2/4 and 1 - s/3, s its depth over 4 mm.
 FIRMER, SOFTER = (0.25, 0.25), (-1 / 3, 0.0)
 DEEP = 2.0
+COUPLED = Coupling(800.0, 4.0, passivity_control=True)
 # Ticks until another firmness is there, and how nearly.
 FADED, NEARLY = 1000, 1e-6
 
@@ -102,8 +103,16 @@ def test_in_and_out_gives_nothing(whole, firmness, ticks):
 
 
 @pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
-@pytest.mark.parametrize("tool", [None, sphere(0.006)], ids=["point", "sphere"])
-@pytest.mark.parametrize("coupling", [None, Coupling(800.0, 4.0, passivity_control=True)])
+@pytest.mark.parametrize(
+    ("tool", "coupling"),
+    [
+        (None, None),
+        (None, COUPLED),
+        pytest.param(sphere(0.006), None, marks=pytest.mark.at_length),
+        (sphere(0.006), COUPLED),
+    ],
+    ids=["point", "point, motors", "sphere", "sphere, motors"],
+)
 def test_no_closed_path_gives_energy(body, firmness, tool, coupling):
     mesh, settings = body.mesh, Settings(MODULUS, coupling=coupling)
     free = ~np.isin(mesh.surface_nodes, body.fixed)
