@@ -77,12 +77,19 @@ fn shorten_latency(_fd: std::os::fd::RawFd) {}
 
 impl Drop for Terminal {
     /// Gives the terminal back: its exclusive mode outlasts this descriptor for as long as
-    /// somebody else, such as a device behind a pseudo-terminal, keeps it open.
+    /// somebody else, such as a device behind a pseudo-terminal, keeps it open; its lock, as long as
+    /// a twin on another thread does.
     fn drop(&mut self) {
+        let fd = self.port.as_raw_fd();
         // SAFETY: the descriptor is open until `port` is dropped after this.
-        // An unplugged terminal has no mode to give back, so a failure means nothing.
+        // An unplugged terminal has nothing to give back, so a failure means nothing.
         // The request's type differs between systems, hence the cast.
-        let _ = unsafe { libc::ioctl(self.port.as_raw_fd(), libc::TIOCNXCL as _) };
+        let _ = unsafe {
+            (
+                libc::ioctl(fd, libc::TIOCNXCL as _),
+                libc::flock(fd, libc::LOCK_UN),
+            )
+        };
     }
 }
 
