@@ -8,6 +8,7 @@ use glam::DVec2;
 use super::system::System;
 use crate::algebra::cholesky::dot;
 use crate::tool::complementarity::Complementarity;
+use crate::tool::friction::nearer;
 
 /// Turns of pushes and forces aside, and sweeps of the latter in each.
 const MOST_TURNS: usize = 6;
@@ -97,26 +98,4 @@ fn sweep(system: &System, forces: &mut [f64], friction: &[f64]) -> f64 {
         most = most.max((force - last).abs().max_element());
     }
     most
-}
-
-/// The force within its limit that brings one point back, or nearer.
-fn nearer(last: DVec2, slip: DVec2, [xx, xy, yy]: [f64; 3], limit: f64) -> DVec2 {
-    let determinant = xx * yy - xy * xy;
-    if determinant > 0.0 {
-        let there = DVec2::new(yy * slip.x - xy * slip.y, xx * slip.y - xy * slip.x);
-        let sticking = last - there / determinant;
-        if sticking.length_squared() <= limit * limit {
-            return sticking;
-        }
-    }
-    // The larger principal value: a step by its inverse lowers the energy.
-    let half = 0.5 * (xx - yy);
-    let largest = 0.5 * (xx + yy) + (half * half + xy * xy).sqrt();
-    let tried = last - slip / largest;
-    let length = tried.length();
-    if length > limit {
-        tried * (limit / length)
-    } else {
-        tried
-    }
 }

@@ -192,7 +192,7 @@ widely! {
 
 /// The force within its limit that brings one point nearer to its anchor: all the way if it may.
 #[inline(always)]
-fn nearer(last: DVec2, slip: DVec2, own: [f64; 3], limit: f64) -> DVec2 {
+pub(crate) fn nearer(last: DVec2, slip: DVec2, own: [f64; 3], limit: f64) -> DVec2 {
     let [xx, xy, yy] = own;
     let determinant = xx * yy - xy * xy;
     if determinant > 0.0 {
