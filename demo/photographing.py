@@ -12,6 +12,8 @@ def photograph(path: Path, percent: int = 100) -> Path:
     scene = bpy.context.scene
     scene.render.resolution_percentage = percent
     scene.render.filepath = str(path)
+    # Else the picture tells where on this machine the scene lies.
+    scene.render.use_stamp_filename = False
     bpy.ops.render.render(write_still=True)
     return path
 
