@@ -80,6 +80,11 @@ class SoftBody:
             )
         return self.density * self.inertia.volume
 
+    @property
+    def moments(self) -> NDArray[np.float64]:
+        """Moments of inertia about the centre of mass, kg m2, (3, 3); errors as of ``mass``."""
+        return self.mass / self.inertia.volume * self.inertia.moments
+
     @cached_property
     def contact_blocks(self) -> NDArray[np.float64]:
         """L_aa^-1 at unit modulus for every node of ``mesh.surface_nodes``, (s, 3, 3).

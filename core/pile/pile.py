@@ -17,6 +17,7 @@ from ..contact.tool.tools import Tool
 from ..errors import PalpateError
 from ..rest.bearing_points import bearing_points
 from ..rest.prop import at
+from ..rest.refusals import one_goal_each, rest_errors
 from ..rest.rest import Rest
 from ..rest.support import Floor, Support, friction_checked
 from .felt import Felt
@@ -84,8 +85,7 @@ class Pile:
             self._points.append(points)
             free = None
             if body.is_free:
-                moments = body.mass / body.inertia.volume * body.inertia.moments
-                free = body.mass, body.inertia.centre, moments, settings.drag_time
+                free = body.mass, body.inertia.centre, body.moments, settings.drag_time
             laid.append((natives[id(body)], body.modulus(None), free, *at(placement)))
         rigid = [
             *((native_shape(tool), *at(pose), settings.friction) for tool, pose in tools),
@@ -93,24 +93,17 @@ class Pile:
         ]
         self._led = [pose for _, pose in tools]
         self._still = [support.pose for support in supports]
-        try:
+        with rest_errors(ValueError):
             self._native = NativePile(
                 laid, rigid, gravity=settings.gravity, friction=settings.friction
             )
-        except ValueError as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
 
     def _size(self) -> float:
         return max(float(body.mesh.nodes.max() - body.mesh.nodes.min()) for body in self.bodies)
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals, one each, from the next step on."""
-        if len(goals) != len(self._led):
-            raise PalpateError(
-                "{goals} goals for {tools} tools; give one for each",
-                goals=len(goals),
-                tools=len(self._led),
-            )
+        one_goal_each(goals, self._led)
         self._led = list(goals)
         for number, goal in enumerate(goals):
             self._native.lead(number, *at(goal))
@@ -123,10 +116,8 @@ class Pile:
         PalpateError
             A force is no number.
         """
-        try:
+        with rest_errors(ValueError, RuntimeError):
             self._native.tick(seconds)
-        except (ValueError, RuntimeError) as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
         return self.rest
 
     def settle(self) -> tuple[Rest, ...]:
@@ -137,10 +128,8 @@ class Pile:
         PalpateError
             A body does not come to rest: it falls, slides or rolls without end.
         """
-        try:
+        with rest_errors(RuntimeError):
             self._native.settle()
-        except RuntimeError as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
         return self.rest
 
     @property

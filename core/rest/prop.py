@@ -17,6 +17,7 @@ from ..contact.tool.pose import Pose
 from ..contact.tool.tool_surface import Touchable
 from ..errors import PalpateError
 from .bearing_points import even_points
+from .refusals import rest_errors
 from .rest_settings import USUAL_REST, RestSettings
 from .support import Floor, Support
 
@@ -62,20 +63,18 @@ def native_prop(
     borne = even_points(body, settings.spacing) if points is None else points
     surface = native_surface(native, *borne)
     position, rotation = at(WORLD if placement is None else placement)
-    try:
+    with rest_errors(ValueError):
         return NativeProp(
             native,
             mass=body.mass,
             centre=body.inertia.centre,
-            inertia=body.mass / body.inertia.volume * body.inertia.moments,
+            inertia=body.moments,
             drag_time=settings.drag_time,
             gravity=settings.gravity,
             supports=[_laid(surface, support, reach) for support in supports],
             position=position,
             rotation=rotation,
         )
-    except ValueError as problem:
-        raise PalpateError("rest: {problem}", problem=problem) from problem
 
 
 def at(pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

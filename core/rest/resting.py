@@ -21,6 +21,7 @@ from ..errors import PalpateError
 from .bearing_points import bearing_points, pressing_points
 from .grip import Grip, native_grip
 from .prop import at, native_prop
+from .refusals import one_goal_each, rest_errors
 from .rest import BodyTouch, Rest
 from .rest_settings import USUAL_REST, RestSettings
 from .support import Floor, Support, friction_checked
@@ -86,14 +87,12 @@ class Resting:
             points = pressing_points(body, tip, settings.spacing)
             return *native_tool(body, native, tip, points), *at(pose), settings.friction
 
-        try:
+        with rest_errors(ValueError):
             self._native = NativeResting(
                 prop,
                 young_modulus=self.young_modulus,
                 fingers=[finger(tip, pose) for tip, pose in tools],
             )
-        except ValueError as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
         self._tools = tuple(tool for tool, _ in tools)
 
     def laid(self) -> Prop:
@@ -113,10 +112,8 @@ class Resting:
         PalpateError
             A force is no number.
         """
-        try:
+        with rest_errors(RuntimeError):
             self._native.come_in()
-        except RuntimeError as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
 
     def move_support(self, number: int, pose: Pose) -> None:
         """Have a support be elsewhere from the next step on."""
@@ -124,12 +121,7 @@ class Resting:
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals, one each, from the next step on."""
-        if len(goals) != len(self._tools):
-            raise PalpateError(
-                "{goals} goals for {tools} tools; give one for each",
-                goals=len(goals),
-                tools=len(self._tools),
-            )
+        one_goal_each(goals, self._tools)
         for number, goal in enumerate(goals):
             self._native.lead(number, *at(goal))
 
@@ -153,10 +145,8 @@ class Resting:
         PalpateError
             A force is no number.
         """
-        try:
+        with rest_errors(ValueError, RuntimeError):
             self._native.tick(seconds, hurried=hurried)
-        except (ValueError, RuntimeError) as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
 
     def settle(self) -> Rest:
         """Go on until tools are at their goals, wrenches cancel and nothing changes any more.
@@ -166,10 +156,8 @@ class Resting:
         PalpateError
             The body does not come to rest: it falls, slides or rolls without end.
         """
-        try:
+        with rest_errors(RuntimeError):
             self._native.settle()
-        except RuntimeError as problem:
-            raise PalpateError("rest: {problem}", problem=problem) from problem
         return self._felt()
 
     def _felt(self) -> Rest:
