@@ -70,7 +70,7 @@ addon/inspection
 addon/panels
 addon/toolbar
 addon
-cli/body cli/rest cli/press cli/softness cli/bake cli
+cli/body cli/scene cli/rest cli/press cli/softness cli/bake cli
 """.split()  # noqa: SIM905 - a level of the house is a line
 
 ROOMS_OF_RUST = """

@@ -1,1 +1,1 @@
-"""palpate info, and figures of bodies."""
+"""palpate info, figures of bodies, and arguments that commands share."""

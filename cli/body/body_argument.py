@@ -9,10 +9,14 @@ from ...core.body.soft_body import SoftBody
 from ...core.stiffness.assembly import lame_parameters
 
 
-def add_body(parser: argparse.ArgumentParser) -> None:
-    """Add ``BODY.npz``, always the first argument."""
+def add_body(parser: argparse.ArgumentParser, *, or_scene: bool = False) -> None:
+    """Add ``BODY.npz``, always the first argument; or a scene of several bodies in its place."""
+    told = "body file, as 'palpate bake' writes it"
     parser.add_argument(
-        "body", type=Path, metavar="BODY.npz", help="body file, as 'palpate bake' writes it"
+        "body",
+        type=Path,
+        metavar="BODY.npz|SCENE.json" if or_scene else "BODY.npz",
+        help=f"{told}; or a scene file (docs/free-bodies.md)" if or_scene else told,
     )
 
 

@@ -25,11 +25,13 @@ from ...core.shape.meeting import settled
 from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
+from ..body.tool_option import KINDS, tool_from
 from ..rest.floor_options import add_floor
 from ..rest.press_resting import pressed_on_floor, refuse_beside_floor, refuse_floor
 from ..rest.rest_figures import rest_figures, touch_figures
+from ..scene.scene_commands import press_scene
+from ..scene.scene_file import is_scene
 from .press_tool import pressed_tools, tool_figures, tool_summary
-from .tool_option import KINDS, tool_from
 
 HELP = "press a body with one or several fingers and read the forces"
 TOO_DEEP = (
@@ -44,8 +46,11 @@ DESCRIPTION = (
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
-    parser.epilog = "Several fingers: give --at and --by once for each, in the same order."
-    add_body(parser)
+    parser.epilog = (
+        "Several fingers: give --at and --by once for each, in the same order. The tools of a "
+        "scene file go their own ways; --tool, --at and --by add more."
+    )
+    add_body(parser, or_scene=True)
     for name, what in (
         ("at", "the surface point nearest to this is touched"),
         ("by", "the finger's displacement from there"),
@@ -55,7 +60,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             type=float,
             nargs=3,
             action="append",
-            required=True,
             metavar=("X", "Y", "Z"),
             help=f"{what} (metres, body coordinates); once for each finger",
         )
@@ -90,13 +94,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--displacements",
         type=Path,
-        metavar="OUT.npy",
-        help="write displacements of the free surface nodes, float64 (n, 3)",
+        metavar="OUT",
+        help="write displacements of the free surface nodes, float64 (n, 3), as .npy; of a scene "
+        "an .npz with those of each body under its name",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Touch, deform, print."""
+    if is_scene(arguments.body):
+        return press_scene(arguments)
+    for option in ("at", "by"):
+        if not getattr(arguments, option):
+            raise PalpateError(f"--{option}: it is missing; give three numbers, X Y Z, in metres")
     body = body_file.load(arguments.body)
     young_modulus = modulus_of(arguments, body)
     if arguments.tool is not None and body.is_free:

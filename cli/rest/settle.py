@@ -14,31 +14,36 @@ from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
+from ..scene.scene_commands import settle_scene
+from ..scene.scene_file import is_scene
 from .floor_options import add_floor, floor_under, gravity
 from .rest_figures import rest_figures
 
-HELP = "lay a body without pins on a floor until it rests"
+HELP = "lay bodies without pins on what bears them until they rest"
 DESCRIPTION = (
     "Let a body that was baked without pins sink, slide and tip until it rests, and print where it "
-    "lies and what the floor bears."
+    "lies and what the floor bears; or all bodies of a scene file, and what bears what."
 )
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
-    add_body(parser)
+    add_body(parser, or_scene=True)
     add_floor(parser)
     add_young(parser)
     parser.add_argument(
         "--surface",
         type=Path,
-        metavar="OUT.npy",
-        help="write the surface nodes where they come to lie, float64 (n, 3)",
+        metavar="OUT",
+        help="write the surface nodes where they come to lie, float64 (n, 3), as .npy; of a scene "
+        "an .npz with those of each body under its name",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Load, settle, print."""
+    if is_scene(arguments.body):
+        return settle_scene(arguments)
     body = body_file.load(arguments.body)
     modulus = modulus_of(arguments, body)
     settings = RestSettings(modulus, gravity=gravity(arguments))

@@ -12,7 +12,7 @@ from ...core.files.atomic_file import atomic_file, refuse_missing_folder
 from ...core.softness.curve_picture import curve_svg
 from ...core.softness.force_depth import MILLIMETRES, ForceDepthCurve, force_depth_curve
 from ..body.body_argument import add_body
-from ..press.tool_option import KINDS, tool_from
+from ..body.tool_option import KINDS, tool_from
 from .place_options import add_at, add_young, positive_length, refuse_suffix, young_modulus_of
 
 POINT, FINGERTIP = "point", "sphere:0.008"

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from palpate.cli.press.tool_option import tool_from
+from palpate.cli.body.tool_option import tool_from
 from palpate.core.contact.press import ContactSettings
 from palpate.core.contact.single_press import press_points, touch_nearest
 from palpate.core.contact.tool.tools import plate, rod

@@ -12,6 +12,9 @@ from ...core.mesh.read_mesh import read_surface
 
 KINDS = "sphere:RADIUS, rod:RADIUS:LENGTH, plate:WIDTH:DEPTH or convex:MESH"
 
+# Before the file of a convex mesh.
+HULL = "convex:"
+
 _SOLIDS: dict[str, tuple[int, Callable[..., Tool]]] = {
     "sphere": (1, sphere),
     "rod": (2, rod),

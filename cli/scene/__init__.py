@@ -1,0 +1,1 @@
+"""Scene files: several bodies that press each other."""
