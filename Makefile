@@ -251,8 +251,9 @@ demo: $(VENV)/.servo-installed build/packages/.made ## the main job on a plush m
 	$(BIN)/python demo/make_demo.py --blender $(BPY_VENV)/bin/python \
 	  --package build/packages/palpate-[0-9]*.zip --output build/demo
 
-# What is seen in the window is played there, so the pictures are what a user sees. Pictures of
-# measurements are made by their benchmarks: cost_against_size.py --docs, passivity_map.py --docs, locking.py --picture.
+# What is seen in the window is played there, so the pictures are what a user sees. Pictures of measurements are made by
+# their benchmarks: cost_against_size.py --docs (cost.png), passivity_map.py --docs (passivity.png), and with --picture
+# locking.py (locking.png) and pressed_materials.py (pressed-materials.png).
 PICTURED := newcomer or comes_back or shows_its_patch_and_force or two_handles_pinch
 .PHONY: pictures
 pictures: $(VENV)/.servo-installed $(BPY_VENV)/.installed build/packages/.made $(WINDOWED_PACKAGE) ## the pictures of all documents anew, but those of measurements

@@ -21,6 +21,10 @@ MOST_FRAMES, MOST_TICKS = 1_048_574, 28_800_000
 # Frequency of half power, over the frame rate. At half the rate, where aliases begin, 46 % of the
 # amplitude are left, at the whole rate 4 %, at 5/3 of it (40 Hz at 24 frames a second) 2 in 10,000.
 CUT_OFF = 1.0 / 3.0
+# No hand moves a finger faster, m/s: it was set down elsewhere.
+FASTEST = 4.0
+# What is kept of the time before the first touch and after the last, s.
+BESIDE_TOUCH = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +48,9 @@ def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) 
 
     A Gaussian that halves the power at a third of the frame rate goes first, as a hand trembles and
     a force jumps faster than frames can tell; it has no overshoot, so nothing is deeper or stronger
-    than it was. Ticks that are missing are bridged by straight lines, of a second at most.
+    than it was. A finger that was set down elsewhere is there in the next frame, never on the
+    straight way between, which may go through the body. Ticks that are missing are bridged by
+    straight lines, of a second at most.
 
     Raises
     ------
@@ -69,19 +75,63 @@ def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) 
             seconds=round(float(times[-1])),
             most=MOST_FRAMES,
         )
-    went = steps[steps > 0.0]
-    step = max(float(np.median(went)), times[-1] / MOST_TICKS) if len(went) else 1.0
-    even = np.arange(0.0, times[-1] + 0.5 * step, step)
+    step = max(_usual(steps), times[-1] / MOST_TICKS)
+    starts = _set_down(own["probe"], np.maximum(steps, step))
     wanted = np.arange(0.0, times[-1] + 0.5 / frames_per_second, 1.0 / frames_per_second)
     spread = HALF_POWER / (CUT_OFF * frames_per_second) / step
     depth = np.linalg.norm(own["probe"] - own["proxy"], axis=1)
 
     def resampled(values: Array) -> Array:
-        smooth = gaussian_filter1d(np.interp(even, times, values), spread, mode="nearest")
-        at: Array = np.interp(wanted, even, smooth)
+        at = np.empty(len(wanted))
+        ends = [*starts[1:], len(times)]
+        for start, end in zip(starts, ends, strict=True):
+            even = np.arange(times[start], times[end - 1] + 0.5 * step, step)
+            own_ticks = np.interp(even, times[start:end], values[start:end])
+            later = wanted >= times[start]
+            smooth = gaussian_filter1d(own_ticks, spread, mode="nearest")
+            at[later] = np.interp(wanted[later], even, smooth)
         return at
 
     def each(vectors: Array) -> Array:
         return np.column_stack([resampled(vectors[:, axis]) for axis in range(3)])
 
     return Frames(each(own["probe"]), each(own["force"]), resampled(depth))
+
+
+def touched_part(samples: NDArray[np.void]) -> NDArray[np.void]:
+    """Ticks of all fingers from half a second before the first touch to half a second after the
+    last; before the first no finger is where it had not been set down yet.
+
+    Raises
+    ------
+    PalpateError
+        Nothing was touched.
+    """
+    touching = samples["time"][samples["force"].any(axis=1)]
+    if not len(touching):
+        raise PalpateError(
+            "recording: the finger touched nothing; press while it records, and take that"
+        )
+    begun = touching[0] - BESIDE_TOUCH
+    for finger in np.unique(samples["finger"]):
+        own = samples[samples["finger"] == finger]
+        before = own[own["time"] <= touching[0]]
+        if len(before):
+            steps = np.diff(before["time"], prepend=before["time"][:1])
+            last = _set_down(before["probe"], np.maximum(steps, _usual(steps)))[-1]
+            begun = max(begun, before["time"][last])
+    times = samples["time"]
+    kept: NDArray[np.void] = samples[(times >= begun) & (times <= touching[-1] + BESIDE_TOUCH)]
+    return kept
+
+
+def _usual(steps: Array) -> float:
+    """Usual time from tick to tick, s; 1 where there is none."""
+    went = steps[steps > 0.0]
+    return float(np.median(went)) if len(went) else 1.0
+
+
+def _set_down(probe: Array, steps: Array) -> list[int]:
+    """Ticks from which on a finger is where it was set down, the first among them."""
+    way = np.linalg.norm(np.diff(probe, axis=0), axis=1)
+    return [0, *(np.flatnonzero(way > FASTEST * steps[1:]) + 1).tolist()]

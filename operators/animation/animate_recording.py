@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...core.errors import PalpateError
-from ...core.record.resampling import Frames, frames_of
+from ...core.record.resampling import Frames, frames_of, touched_part
 from ..press.modal_press import Pressing
 from ..press.save_recording import NOTHING, recorded, refusal_unrecorded
 from ..reporting.translated import reported
@@ -47,10 +47,12 @@ class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
             frame = replace(frame, rotation=np.eye(3), stretch=np.eye(3), origin=np.zeros(3))
         rate = scene.render.fps / scene.render.fps_base
         first = scene.frame_current
-        made, size = [], drawn_surface.size_of(thing, scene)
-        for finger in np.unique(kept.samples["finger"])[:2]:
-            frames = frames_of(kept.samples, int(finger), rate)
+        made, size, touched = [], drawn_surface.size_of(thing, scene), touched_part(kept.samples)
+        for finger in np.unique(touched["finger"])[:2]:
+            frames = frames_of(touched, int(finger), rate)
             made.append(_probe(None if kept.in_world else thing, scene, frame, frames, size))
+        # What was recorded was pressed by the finger alone.
+        thing.palpate.pressers = None
         chosen = scene.palpate
         chosen.source, chosen.source_empty = "EMPTY", made[0]
         if len(made) > 1:

@@ -33,9 +33,7 @@ class BakingOperator(Acting):
     def refusal(cls, context: bpy.types.Context) -> str:
         if bake_session.current() is not None:
             return "A bake is running; wait for it or cancel it"
-        if press_session.current() is not None:
-            return "Finish pressing first: Enter keeps the shape, Escape restores it"
-        return soft_object.refusal(context.object)
+        return press_session.refusal() or soft_object.refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         body, report = bake_session.run(context.object, context.scene, rebuild=self.rebuild)

@@ -40,9 +40,7 @@ class OnLayers(Acting):
             )
         if thing.mode != "OBJECT":
             return "Go to Object Mode first"
-        if live_layer.find(thing) is not None:
-            return "Finish pressing first: Enter keeps the shape, Escape restores it"
-        return ""
+        return live_layer.refusal(thing)
 
 
 class IntoTheMesh(OnLayers):

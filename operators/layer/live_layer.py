@@ -13,6 +13,8 @@ from . import layers, place_marks
 from .layer_groups import TRACTION
 from .layers import LIVE_NAME
 
+GOING_ON = "A press is going on; Enter keeps the shape, Escape restores it"
+
 
 def hang(thing: bpy.types.Object) -> None:
     """Add the live layer, and the marks by which its places are found."""
@@ -54,6 +56,11 @@ def find(thing: bpy.types.Object) -> bpy.types.NodesModifier | None:
     """The live layer, if there is one."""
     live = thing.modifiers.get(LIVE_NAME)
     return live if live is not None and layers.is_layer(live) else None
+
+
+def refusal(thing: bpy.types.Object | None) -> str:
+    """Reason why an object's layers stay as they are now: it is being pressed; empty if not."""
+    return "" if thing is None or find(thing) is None else GOING_ON
 
 
 def remove_leftovers() -> None:

@@ -57,9 +57,7 @@ class Pressing(Acting):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        reason = soft_object.refusal(context.object)
-        if not reason and press_session.current() is not None:
-            reason = "A press is going on; Enter keeps the shape, Escape restores it"
+        reason = soft_object.refusal(context.object) or press_session.refusal()
         if not reason and _strokes(context):
             reason = "A stroke is going on; let go of the button first"
         return reason or soft_object.refusal_unbaked(context.object)

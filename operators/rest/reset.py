@@ -26,9 +26,9 @@ class PALPATE_OT_reset_rest(Acting, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        if press_session.current() is not None or _strokes(context):
-            return "Finish pressing first: Enter keeps the shape, Escape restores it"
-        return soft_object.refusal(context.object)
+        # A stroke's layer is live, too.
+        reason = press_session.refusal() or live_layer.refusal(context.object)
+        return reason or soft_object.refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         reset(context.object)
@@ -44,10 +44,6 @@ def reset(thing: bpy.types.Object) -> None:
             thing.modifiers.remove(player)
     bring_back(thing)
     rest_layer.remove(thing)
-
-
-def _strokes(context: bpy.types.Context) -> bool:
-    return context.object is not None and live_layer.find(context.object) is not None
 
 
 classes = (PALPATE_OT_reset_rest,)

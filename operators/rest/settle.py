@@ -46,9 +46,7 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        if press_session.current() is not None:
-            return "A press is going on; Enter keeps the shape, Escape restores it"
-        return soft_object.refusal_unbaked(context.object)
+        return press_session.refusal() or soft_object.refusal_unbaked(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
         thing = context.object

@@ -239,6 +239,11 @@ def current() -> PressSession | None:
     return _current
 
 
+def refusal() -> str:
+    """Reason why something else cannot be done now: a press is running; empty if none is."""
+    return "" if _current is None else live_layer.GOING_ON
+
+
 def begin(
     thing: bpy.types.Object, scene: bpy.types.Scene, source: Source, *, pinch: bool = False
 ) -> PressSession:

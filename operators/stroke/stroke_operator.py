@@ -60,11 +60,10 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
 
     @classmethod
     def refusal(cls, context: bpy.types.Context) -> str:
-        if press_session.current() is not None:
-            return "A press is going on; Enter keeps the shape, Escape restores it"
-        if context.mode != "OBJECT":
-            return "Strokes are for Object Mode; leave this mode first"
-        return ""
+        reason = press_session.refusal()
+        if not reason and context.mode != "OBJECT":
+            reason = "Strokes are for Object Mode; leave this mode first"
+        return reason
 
     def act(self, context: bpy.types.Context) -> None:
         thing, scene = self.remembered(context), context.scene

@@ -64,6 +64,43 @@ def test_a_recorded_tap_is_baked_into_a_cache(tap, tmp_path):
     assert heights[1] < heights[0] - 1e-4
 
 
+def test_idle_seconds_before_the_touch_are_not_animated(tap, monkeypatch):
+    recording, scene = part("operators.record.recording"), bpy.context.scene
+    samples = np.concatenate(
+        [np.repeat(recording.last().samples[:1], 5 * RATE), recording.last().samples]
+    )
+    samples["time"] = np.arange(len(samples)) / RATE
+    monkeypatch.setattr(recording, "_last", recording.Kept(samples, RATE))
+    soft_cube()
+    scene.frame_set(1)
+    assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
+    depths = []
+    for frame in range(1, scene.render.fps + 1):
+        scene.frame_set(frame)
+        depths.append(scene.palpate.source_empty["depth_m"])
+    assert depths[0] < 1e-4
+    assert max(depths) > 0.0035
+
+
+def test_the_recorded_finger_leads_and_not_the_pressers(tap):
+    thing, scene = soft_cube(), bpy.context.scene
+    scene.palpate.tip = "SPHERE"
+    thing.palpate.pressers = bpy.data.collections.new("Hand")
+    assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
+    assert thing.palpate.pressers is None
+    (presser,) = _pressers(thing)
+    scene.frame_set(scene.frame_current)
+    np.testing.assert_allclose(
+        presser.place, scene.palpate.source_empty.matrix_world.translation, atol=1e-6
+    )
+
+
+def _pressers(thing):
+    drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
+    graph = bpy.context.evaluated_depsgraph_get()
+    return part("operators.animation.pressers").pressers_of(thing, graph, drawn)
+
+
 @pytest.mark.parametrize("own_sizes", [False, True])
 def test_the_empty_is_as_large_as_the_finger(tap, own_sizes):
     thing, scene = soft_cube(), bpy.context.scene

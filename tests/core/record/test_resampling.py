@@ -5,9 +5,11 @@ import pytest
 
 from palpate.core.errors import PalpateError
 from palpate.core.record.recording import DTYPE
-from palpate.core.record.resampling import frames_of
+from palpate.core.record.resampling import frames_of, touched_part
 
 RATE, FPS = 1000, 24
+# Fast waves, and yet no finger that is set down elsewhere.
+HEIGHT = 1e-3
 
 
 def ticks(seconds, place, finger=0):
@@ -22,29 +24,30 @@ def ticks(seconds, place, finger=0):
 
 
 def wave(hertz):
-    return lambda t: np.sin(2 * np.pi * hertz * t)
+    return lambda t: HEIGHT * np.sin(2 * np.pi * hertz * t)
 
 
 def test_slow_motion_is_kept_and_faster_than_frames_is_not():
     slow = frames_of(ticks(2.0, wave(1.0)), 0, FPS)
     t = np.arange(len(slow.depth)) / FPS
     assert len(t) == 2 * FPS + 1
-    np.testing.assert_allclose(slow.probe[3:-3, 2], -wave(1.0)(t)[3:-3], atol=0.006)
+    np.testing.assert_allclose(slow.probe[3:-3, 2], -wave(1.0)(t)[3:-3], atol=0.006 * HEIGHT)
     np.testing.assert_allclose(slow.force[:, 0], -100 * slow.probe[:, 2], atol=1e-12)
     # At a third of the rate half the power, and at half of it less than half the height.
     for hertz, left in ((FPS / 3, np.sqrt(0.5)), (FPS / 2, 2.0 ** (-9 / 8))):
-        edge = frames_of(ticks(2.0, lambda t, hertz=hertz: np.cos(2 * np.pi * hertz * t)), 0, FPS)
-        assert np.abs(edge.probe[6:-6, 2]).max() == pytest.approx(left, abs=0.003)
+        shifted = ticks(2.0, lambda t, hertz=hertz: wave(hertz)(t + 0.25 / hertz))
+        edge = frames_of(shifted, 0, FPS)
+        assert np.abs(edge.probe[6:-6, 2]).max() == pytest.approx(left * HEIGHT, rel=0.01)
 
 
 @pytest.mark.parametrize("hertz", [40.0, 47.9, 55.0, 250.0])
 def test_a_tremble_leaves_no_slow_one(hertz):
     # Every 24th of a second a sine of 40 Hz looks like one of 8, of 47.9 like one of 0.1.
     t = np.arange(2 * FPS + 1) / FPS
-    assert np.abs(wave(hertz)(t)).max() > 0.1
+    assert np.abs(wave(hertz)(t)).max() > 0.1 * HEIGHT
     fast = frames_of(ticks(2.0, wave(hertz)), 0, FPS)
-    assert np.abs(fast.probe[6:-6, 2]).max() < 3e-4
-    assert np.abs(fast.force[6:-6, 0]).max() < 3e-2
+    assert np.abs(fast.probe[6:-6, 2]).max() < 3e-4 * HEIGHT
+    assert np.abs(fast.force[6:-6, 0]).max() < 3e-2 * HEIGHT
 
 
 def test_a_tap_is_never_deeper_than_it_was():
@@ -87,3 +90,25 @@ def test_more_frames_than_blender_numbers_are_refused():
     rare["time"] = np.arange(len(rare), dtype=float)
     with pytest.raises(PalpateError, match="frames that Blender numbers"):
         frames_of(rare, 0, FPS)
+
+
+def test_a_finger_that_is_set_down_elsewhere_is_never_on_the_way_between():
+    moved = ticks(1.0, lambda t: np.where(t < 0.51, 0.01, 0.0))
+    moved["probe"][510:, 2] = -0.1
+    heights = frames_of(moved, 0, FPS).probe[:, 2]
+    np.testing.assert_allclose(heights[:13], -0.01, atol=1e-12)
+    np.testing.assert_allclose(heights[13:], -0.1, atol=1e-12)
+
+
+def test_idle_seconds_beside_the_touches_are_left_out():
+    slow = ticks(
+        9.0, lambda t: np.where((t > 3.0) & (t < 5.0), 0.01 * np.sin(np.pi * (t - 3.0)), 0)
+    )
+    times = touched_part(slow)["time"] - 5.0
+    assert (times[0], times[-1]) == pytest.approx((2.5, 5.5), abs=0.002)
+    # Where it waited to be set down, no finger has been seen.
+    slow["probe"][:2900, 2] = 0.1
+    assert touched_part(slow)["time"][0] - 5.0 == pytest.approx(2.9, abs=0.002)
+    slow["force"] = 0.0
+    with pytest.raises(PalpateError, match="touched nothing"):
+        touched_part(slow)
