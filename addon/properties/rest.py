@@ -31,8 +31,8 @@ class RestProperties:
     )
     colliders: chosen_collection(
         "Colliders",
-        "Objects of this collection bear the object: flat ones, boxes, any convex mesh. They may "
-        "be animated",
+        "Objects of this collection bear the object: flat ones, boxes, any convex mesh, which may "
+        "be animated, and soft ones, which give way when it settles",
     )
     rest_friction: number(
         "Friction",

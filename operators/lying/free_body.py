@@ -164,13 +164,12 @@ def lie(
     PalpateError
         Too many tools or colliders.
     """
-    chosen, scene = thing.palpate, bpy.context.scene
-    x, y, z = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+    chosen = thing.palpate
     body = _at_density(drawn.body, chosen.density)
     settings = RestSettings(
         young_modulus=chosen.young_modulus,
         friction=chosen.static_friction,
-        gravity=(x, y, z),
+        gravity=scene_gravity(bpy.context.scene),
         spacing=even_spacing(body) if for_servo else None,
     )
     resting = Resting(
@@ -184,10 +183,20 @@ def lie(
     return FreeBody(drawn, supports, settings, resting)
 
 
+def scene_gravity(scene: bpy.types.Scene) -> tuple[float, float, float]:
+    """Gravity of a scene, m/s2."""
+    x, y, z = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
+    return float(x), float(y), float(z)
+
+
 def supports_under(
-    thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph
+    thing: bpy.types.Object,
+    drawn: DrawnBody,
+    graph: bpy.types.Depsgraph,
+    *,
+    besides: Sequence[bpy.types.Object] | None = None,
 ) -> Supports:
-    """What the free body of an object rests on.
+    """What the free body of an object rests on, ``besides`` soft objects, on which alone it may.
 
     Raises
     ------
@@ -202,7 +211,7 @@ def supports_under(
             "{name} is pinned, so it stays where it is; choose Pins: None and press Rebuild Body",
             name=thing.name,
         )
-    return supports_of(thing, drawn, graph)
+    return supports_of(thing, drawn, graph, besides=besides)
 
 
 def _refusal(thing: bpy.types.Object) -> PalpateError | None:

@@ -79,7 +79,7 @@ class PressedProp:
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Move the object to where it came to rest."""
-        show(thing, self._rested, self._alone.supports.floor)
+        show([thing], [self._rested], self._alone.supports.floor)
 
     def give_back(self, thing: bpy.types.Object) -> None:
         """Have the object as it was before."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -50,8 +51,14 @@ class Supports:
         return max(float(gap), 0.0)
 
 
-def supports_of(thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph) -> Supports:
-    """What an object rests on.
+def supports_of(
+    thing: bpy.types.Object,
+    drawn: DrawnBody,
+    graph: bpy.types.Depsgraph,
+    *,
+    besides: Sequence[bpy.types.Object] | None = None,
+) -> Supports:
+    """What an object rests on, besides itself and soft objects that bear it by giving way.
 
     Raises
     ------
@@ -63,14 +70,11 @@ def supports_of(thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Deps
     height = _floor_height(thing, drawn, metres_per_unit(graph.scene))
     found: list[Floor | Support] = [] if height is None else [Floor(height, friction)]
     for one in [] if chosen.colliders is None else chosen.colliders.all_objects:
-        if one == thing:
-            raise PalpateError(
-                "colliders: {name} cannot rest on itself; take it out of the collection",
-                name=thing.name,
-            )
+        if one == thing or one in (besides or ()):
+            continue
         pose = placement_of(frame_of(evaluated(one, graph), graph.scene))
         found.append(Support(collider_tool(one, graph), pose, friction))
-    if not found:
+    if not found and besides is None:
         raise PalpateError(
             "{name}: there is nothing under it; choose a floor or colliders under Rests On",
             name=thing.name,

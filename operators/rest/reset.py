@@ -8,6 +8,7 @@ from ..layer import live_layer
 from ..layer.stack import PLAYERS
 from ..lying import rest_layer
 from ..lying.laid import CHANNELS, bring_back
+from ..lying.together import together
 from ..object import soft_object
 from ..played import mesh_cache
 from ..reporting.acting import Acting
@@ -20,7 +21,7 @@ class PALPATE_OT_reset_rest(Acting, bpy.types.Operator):
     bl_label = "Reset"
     bl_description = (
         "Bring the object back to where it was before it settled, without its sag and without the "
-        "animation that was baked of it. Kept presses stay"
+        "animation that was baked of it, and all that settled with it. Kept presses stay"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -31,7 +32,8 @@ class PALPATE_OT_reset_rest(Acting, bpy.types.Operator):
         return reason or soft_object.refusal(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
-        reset(context.object)
+        for thing in together(context.object, context.selected_objects):
+            reset(thing)
 
 
 def reset(thing: bpy.types.Object) -> None:

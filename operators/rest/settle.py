@@ -1,6 +1,8 @@
-"""Settle: let an object that nobody holds come to rest; in the window it is seen on its way."""
+"""Settle: let objects that nobody holds come to rest; in the window they are seen on their way."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
@@ -8,8 +10,10 @@ from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
 from ..lying.before import Before
-from ..lying.coming_down import begun, settle, show
-from ..lying.free_body import FreeBody, Lying
+from ..lying.coming_down import Alone, begun, settle, show
+from ..lying.free_body import Lying
+from ..lying.free_pile import FreePile
+from ..lying.together import together
 from ..object import soft_object
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
@@ -33,13 +37,14 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
     bl_label = "Settle"
     bl_description = (
         "Let the soft object come to rest on its floor and colliders: it moves, turns and sags as "
-        "it would lie there. The mesh stays as it is; Reset brings all back"
+        "it would lie there, with all soft objects that are selected or that it rests on, which "
+        "give way. The meshes stay as they are; Reset brings all back"
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    _handle: ObjectHandle
-    _before: Before
-    _free: FreeBody
+    _handles: list[ObjectHandle]
+    _before: list[Before]
+    _coming: Alone | FreePile
     _pictures: int
     _still: int
     _place: NDArray[np.float64]
@@ -49,8 +54,8 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
         return press_session.refusal() or soft_object.refusal_unbaked(context.object)
 
     def act(self, context: bpy.types.Context) -> None:
-        thing = context.object
-        self._tell(thing, settle(thing, context.evaluated_depsgraph_get()))
+        things = together(context.object, context.selected_objects)
+        self._tell(things, settle(things, context.evaluated_depsgraph_get()))
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
@@ -76,47 +81,65 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
         return {"FINISHED"} if is_done else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Give the object back; also with the operator: another file, unregister, or exit."""
-        thing = self._handle.find()
-        if thing is not None:
-            self._before.give_back(thing)
+        """Give the objects back; also with the operator: another file, unregister, or exit."""
+        for handle, before in zip(self._handles, self._before, strict=True):
+            thing = handle.find()
+            if thing is not None:
+                before.give_back(thing)
         self._stay.end(context)
 
     def _start(self, context: bpy.types.Context) -> set[str]:
-        thing = context.object
+        things = together(context.object, context.selected_objects)
         with wait_cursor(context):
-            self._free = begun(thing, context.evaluated_depsgraph_get())
-            self._free.drop(SEEN_FALLING * self._free.drawn.size)
-        self._handle, self._before = ObjectHandle.of(thing), Before.of(thing)
+            self._coming = begun(things, context.evaluated_depsgraph_get(), SEEN_FALLING)
+        self._handles = [ObjectHandle.of(thing) for thing in things]
+        self._before = [Before.of(thing) for thing in things]
         self._pictures, self._still = 0, 0
-        self._place = np.zeros(12)
+        self._place = np.zeros((len(things), 4, 3))
         self._stay = ModalStay()
         self._stay.begin(self, context, PACE)
         self._stay.say(context, f"Palpate: {shown('Coming to rest     [Esc] Restore')}")
         return {"RUNNING_MODAL"}
 
     def _go_on(self, context: bpy.types.Context) -> bool:
-        """Show the object a picture later; whether it rests."""
-        thing, free = self._handle.find(), self._free
-        if thing is None:
-            raise PalpateError("{name} is gone; choose another object", name=self._handle.name)
+        """Show the objects a picture later; whether all rest."""
+        things, coming = [self._found(handle) for handle in self._handles], self._coming
         for _ in range(TICKS):
-            free.resting.tick(TICK, hurried=True)
-        lying = free.now()
-        here = np.append(lying.rest.placement.position / free.drawn.size, lying.frame.rotation)
+            coming.tick(TICK)
+        lying = coming.now()
+        placements = [one.rest.placement for one in lying]
+        here = np.array([[one.position / coming.size, *one.rotation] for one in placements])
         self._still = self._still + 1 if np.abs(here - self._place).max() < STILL else 0
         self._place, self._pictures = here, self._pictures + 1
         is_done = self._still == STILL_PICTURES or self._pictures == MOST_PICTURES
         if is_done:
-            lying = free.come_down()
-        show(thing, lying, free.supports.floor)
+            lying = coming.settle()
+        show(things, lying, coming.floor)
         if is_done:
             self._stay.end(context)
-            self._tell(thing, lying)
+            self._tell(things, lying)
         return is_done
 
-    def _tell(self, thing: bpy.types.Object, lying: Lying) -> None:
-        strongest = max(float(np.linalg.norm(one.force)) for one in lying.rest.supports)
+    def _found(self, handle: ObjectHandle) -> bpy.types.Object:
+        thing = handle.find()
+        if thing is None:
+            raise PalpateError("{name} is gone; choose another object", name=handle.name)
+        return thing
+
+    def _tell(self, things: Sequence[bpy.types.Object], lying: Sequence[Lying]) -> None:
+        bearing = [touch for one in lying for touch in (*one.rest.supports, *one.rest.others)]
+        strongest = max(float(np.linalg.norm(touch.force)) for touch in bearing)
+        if len(things) > 1:
+            self.report(
+                {"INFO"},
+                reported(
+                    "{count} objects rest: {force:.3g} N where one bears most",
+                    count=len(things),
+                    force=strongest,
+                ),
+            )
+            return
+        (thing,) = things
         self.report(
             {"INFO"},
             reported(

@@ -80,7 +80,7 @@ class FreeStroke:
 
     def leave(self, thing: bpy.types.Object, lying: Lying) -> None:
         """Have the object lie there."""
-        show(thing, lying, self._alone.supports.floor)
+        show([thing], [lying], self._alone.supports.floor)
 
     def give_back(self, thing: bpy.types.Object) -> None:
         """Have the object as it was before."""

@@ -59,7 +59,7 @@ def test_what_rests_already_stays_there(free_cube):
 
 def test_the_floor_bears_the_weight(free_cube):
     settle = part("operators.rest.settle").settle
-    lying = settle(free_cube, bpy.context.evaluated_depsgraph_get())
+    (lying,) = settle([free_cube], bpy.context.evaluated_depsgraph_get())
     (floor,) = lying.rest.supports
     np.testing.assert_allclose(floor.force, (0.0, 0.0, -weight_of(free_cube)), rtol=1e-6, atol=1e-7)
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
 
-from palpate.cli.main import main
 from palpate.cli.body.tool_option import tool_from
+from palpate.cli.main import main
 from palpate.core.bake.steps import BakeSettings, bake
 from palpate.core.body import body_file
 from palpate.core.contact.place import nearest_place
