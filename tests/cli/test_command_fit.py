@@ -48,7 +48,11 @@ def test_detail_that_a_file_has_lost_far_away_is_named(written, refusal, tmp_pat
 
 @pytest.mark.parametrize(
     ("unit", "size"),
-    [(1e4, "1 km"), pytest.param(1e-5, "1 µm", marks=pytest.mark.at_length), (1.0, None)],
+    [
+        (1e4, "1 km"),
+        pytest.param(1e-5, "1 µm", marks=pytest.mark.at_length),
+        pytest.param(1.0, None, marks=pytest.mark.at_length),
+    ],
 )
 def test_the_fit_is_told_by_bake_and_info_and_odd_sizes_by_both(
     written, palpate, tmp_path, unit, size

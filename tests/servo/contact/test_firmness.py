@@ -102,16 +102,23 @@ def test_in_and_out_gives_nothing(whole, firmness, ticks):
     assert work >= -1e-3 * np.abs(forces).max() * 0.007
 
 
-@pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
 @pytest.mark.parametrize(
-    ("tool", "coupling"),
+    ("firmness", "tool", "coupling"),
     [
-        (None, None),
-        (None, COUPLED),
-        pytest.param(sphere(0.006), None, marks=pytest.mark.at_length),
-        (sphere(0.006), COUPLED),
+        pytest.param(FIRMER, None, None, id="point"),
+        pytest.param(SOFTER, None, COUPLED, id="softer, point, motors"),
+        pytest.param(FIRMER, sphere(0.006), COUPLED, id="sphere, motors"),
+        *(
+            pytest.param(*one, marks=pytest.mark.at_length)
+            for one in (
+                (SOFTER, None, None),
+                (FIRMER, None, COUPLED),
+                (SOFTER, sphere(0.006), COUPLED),
+                (FIRMER, sphere(0.006), None),
+                (SOFTER, sphere(0.006), None),
+            )
+        ),
     ],
-    ids=["point", "point, motors", "sphere", "sphere, motors"],
 )
 def test_no_closed_path_gives_energy(body, firmness, tool, coupling):
     mesh, settings = body.mesh, Settings(MODULUS, coupling=coupling)

@@ -39,7 +39,9 @@ def stored_body(name):
     return bake(mesh, BakeSettings(0.3, 5_000.0, PinNodes(fixed)))[0]
 
 
-@pytest.mark.parametrize("name", ["cube", "mouse", "hare"])
+@pytest.mark.parametrize(
+    "name", ["cube", pytest.param("mouse", marks=pytest.mark.at_length), "hare"]
+)
 def test_a_sphere_led_aside(name, tmp_path, capsys):
     body = stored_body(name)
     file = tmp_path / "body.npz"
