@@ -27,6 +27,7 @@ class PALPATE_MT_object(bpy.types.Menu):
         layout.separator()
         layout.operator("palpate.animate_layers")
         layout.operator("palpate.press_frames")
+        layout.operator("palpate.animate_recording")
         layout.operator("palpate.add_press_rig")
         layout.operator("palpate.convert_layers")
         layout.operator("palpate.apply_layers")

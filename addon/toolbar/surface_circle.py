@@ -22,6 +22,7 @@ from ...operators.scene import viewport
 from ...operators.scene.drawn_surface import metres_per_unit
 from ...operators.scene.viewport import Viewport
 from ...operators.session import press_session
+from ...operators.stroke import stroke_size
 from ...operators.stroke.stroke_size import radius_for
 
 SEGMENTS = 48
@@ -58,20 +59,27 @@ def draw(xy: tuple[int, int]) -> None:
     its own finger.
     """
     context = bpy.context
-    if press_session.current() is not None:
-        return
-    if _found is None or context.window is None or context.mode != "OBJECT":
+    if press_session.current() is not None or context.window is None or context.mode != "OBJECT":
         return
     here = viewport.under_pointer(context.window, *xy)
     if here is None or context.region != here.region:
         return
-    if not all(map(np.array_equal, _found.line, here.line_of_sight())):
-        # The view has moved under the pointer.
-        return
-    points = _on_screen(_found.points, here)
+    around = _around(here)
+    points = None if around is None else _on_screen(around, here)
     if points is not None:
         outward = context.scene.palpate.stroke_outward
         _draw_line(points, OUTWARD if outward else INWARD, context)
+
+
+def _around(here: Viewport) -> NDArray[np.float64] | None:
+    """Points of the circle, world coordinates: where its size is being set, else at the pointer."""
+    sized = stroke_size.being_set()
+    if sized is not None:
+        return _circle(sized.touched, sized.radius)
+    if _found is None or not all(map(np.array_equal, _found.line, here.line_of_sight())):
+        # The view has moved under the pointer.
+        return None
+    return _found.points
 
 
 def _find(context: bpy.types.Context, here: Viewport) -> _Found | None:

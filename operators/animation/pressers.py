@@ -60,8 +60,14 @@ def pressers_of(
         One of them cannot press, or there is none.
     """
     scene = graph.scene
-    if thing.palpate.pressers is not None:
-        return [_of_object(one, thing, graph) for one in thing.palpate.pressers.all_objects]
+    chosen = thing.palpate.pressers
+    if chosen is not None:
+        if not chosen.all_objects:
+            raise PalpateError(
+                "pressers: nothing is in {name}; put meshes or Empties into this collection",
+                name=chosen.name,
+            )
+        return [_of_object(one, thing, graph) for one in chosen.all_objects]
     tool = chosen_tip(scene, thing, drawn.size, graph).tool
     if tool is None:
         raise PalpateError(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import bpy
 import numpy as np
 
 from ...core.errors import PalpateError
-from ..place.seen_place import under_pointer
+from ..place.seen_place import SeenPlace, under_pointer
 from ..reporting.acting import Acting
 from ..reporting.quantities import scene_length
 from ..reporting.translated import shown
@@ -20,6 +22,22 @@ DOUBLING_PIXELS = 100.0
 WEAKEST, STRONGEST = 0.05, 20.0
 # Of the radius before, at once.
 LEAST_SHARE = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Sized:
+    """Place where the pointer was when a size began to be set, and the radius now, scene units."""
+
+    touched: SeenPlace
+    radius: float
+
+
+_sized: Sized | None = None
+
+
+def being_set() -> Sized | None:
+    """The tool at the place for which a size is being set, while somebody does so."""
+    return _sized
 
 
 def radius_for(scene: bpy.types.Scene, thing: bpy.types.Object) -> float:
@@ -51,6 +69,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
+    _touched: SeenPlace | None
     _before: float
     _radius: float
     _start: int
@@ -82,6 +101,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         if here is None or thing is None:
             raise PalpateError("place the pointer in a 3D view with an object to set this")
         touched = under_pointer(context.scene, context.evaluated_depsgraph_get(), here)
+        self._touched = touched
         frame = frame_of(thing, context.scene) if touched is None else touched.frame
         place = np.zeros(3) if touched is None else frame.body_from_world(touched.seen)
         view = here.view_at(place, frame)
@@ -100,6 +120,7 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
             changed = self._before * 2.0 ** (pixels / DOUBLING_PIXELS)
             chosen.stroke_strength = min(max(changed, WEAKEST), STRONGEST)
             self._stay.head(context, f"{shown('Strength')}: {chosen.stroke_strength:.2f}")
+            self._show(context, self._radius)
             return
         metres = max(self._radius + pixels * self._metres_per_pixel, LEAST_SHARE * self._radius)
         if chosen.own_sizes:
@@ -109,6 +130,14 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         metres = radius_for(context.scene, context.object)
         length = scene_length(context.scene, metres)
         self._stay.head(context, f"{shown('Radius')}: {length}")
+        self._show(context, metres)
+
+    def _show(self, context: bpy.types.Context, metres: float) -> None:
+        """Have the circle drawn with a radius where the pointer was, as brushes do."""
+        global _sized  # noqa: PLW0603  there is one pointer
+        if self._touched is not None:
+            _sized = Sized(self._touched, metres / metres_per_unit(context.scene))
+            viewport.redraw_views()
 
     def _property(self, context: bpy.types.Context) -> str:
         """Name of the scene's property that is set."""
@@ -117,6 +146,8 @@ class PALPATE_OT_stroke_size(Acting, bpy.types.Operator):
         return "tip_radius" if context.scene.palpate.own_sizes else "tip_share"
 
     def _leave(self, context: bpy.types.Context, result: str) -> set[str]:
+        global _sized  # noqa: PLW0603  see _show
+        _sized = None
         self._stay.end(context)
         return {result}
 

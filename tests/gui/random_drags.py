@@ -201,12 +201,12 @@ def _look_from_elsewhere(stage: Stage, rng: np.random.Generator) -> Wait:
         bpy.ops.view3d.view_selected()
     # The view goes there in steps.
     yield 1.0
-    _clear_of_sidebar(stage)
+    clear_of_sidebar(stage)
     yield
     yield
 
 
-def _clear_of_sidebar(stage: Stage) -> None:
+def clear_of_sidebar(stage: Stage) -> None:
     """Move the view aside, as a user does, where a wide sidebar covers its middle."""
     region, covered = stage.region("WINDOW"), stage.region("UI").width
     if covered < region.width / 3:

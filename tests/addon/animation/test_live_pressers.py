@@ -93,6 +93,12 @@ def test_several_parts_press_together_and_an_empty_is_a_sphere(pressed):
     assert part("operators.animation.failures").reason(pressed) == ""
 
 
+def test_an_empty_collection_is_named(pressed):
+    pressed.palpate.pressers = bpy.data.collections.new("Hand")
+    told = part("operators.animation.failures").reason(pressed)
+    assert "nothing is in Hand" in str(told)
+
+
 def test_what_cannot_press_is_told_and_the_rest_goes_on(pressed):
     failures = part("operators.animation.failures")
     light = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))

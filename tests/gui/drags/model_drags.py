@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from random_drags import Drag, random_drags
+from random_drags import Drag, clear_of_sidebar, random_drags
 from stage import Stage, Wait
 
 from bl_ext.user_default.palpate.addon import known_status
@@ -142,4 +142,7 @@ def _scaled(stage: Stage, scale: float) -> Wait:
         yield
     with stage.view():
         bpy.ops.view3d.view_selected()
+    # The view goes there in steps.
+    yield 1.0
+    clear_of_sidebar(stage)
     yield 0.5

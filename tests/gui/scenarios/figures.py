@@ -7,13 +7,14 @@ from contextlib import contextmanager
 
 import bpy
 import numpy as np
-from mouse_scene import depth, drag_in, end_press, open_mouse, start_press, type_key
+from mouse_scene import BACK, depth, drag_in, end_press, open_mouse, start_press, type_key
 from shown import replaced
 from stage import Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.addon.inspection import body_view
 from bl_ext.user_default.palpate.addon.overlay import hud, pixels
 from bl_ext.user_default.palpate.addon.overlay.reading import reading
+from bl_ext.user_default.palpate.addon.toolbar import surface_circle
 from bl_ext.user_default.palpate.operators.session import press_session
 
 Area = tuple[float, float, float, float]
@@ -116,6 +117,23 @@ def pins_and_tetrahedra_are_drawn_over_the_object(stage: Stage) -> Wait:
     assert 0 < few < len(body_view._known["tetrahedra"][1][0])
 
 
+def the_circle_grows_where_it_was_while_its_radius_is_set(stage: Stage) -> Wait:
+    yield from open_mouse(stage)
+    with stage.view():
+        bpy.ops.wm.tool_set_by_id(name="palpate.tool")
+    x, y = stage.pixel(BACK)
+    yield from stage.move((x, y))
+    with _circles() as drawn:
+        yield from stage.key("F")
+        yield from stage.move((x + 40, y))
+        yield from stage.picture("larger")
+    yield from type_key(stage, "ESC")
+    circle = np.array(drawn[-1])
+    # The last of its points is the end of the normal's line, whose length is the circle's.
+    assert np.linalg.norm(circle[:-1].mean(axis=0) - (x, y)) < 10
+    assert np.ptp(circle, axis=0).max() > np.ptp(np.array(drawn[0]), axis=0).max() + 40
+
+
 def a_hole_is_selected_where_a_mesh_is_refused(stage: Stage) -> Wait:
     yield from stage.open_sidebar("Palpate")
     with stage.view():
@@ -135,6 +153,20 @@ def a_hole_is_selected_where_a_mesh_is_refused(stage: Stage) -> Wait:
     assert thing.mode == "EDIT"
     bpy.ops.object.mode_set(mode="OBJECT")
     assert sum(edge.select for edge in thing.data.edges) == 4
+
+
+@contextmanager
+def _circles() -> Iterator[list[list[tuple[float, float]]]]:
+    """Circles that are drawn on the surface while this lasts, window pixels."""
+    circles: list[list[tuple[float, float]]] = []
+    draw = surface_circle._draw_line
+
+    def line(points: list[tuple[float, float]], *rest: object) -> None:
+        circles.append(points)
+        draw(points, *rest)
+
+    with replaced(surface_circle, "_draw_line", line):
+        yield circles
 
 
 @contextmanager
