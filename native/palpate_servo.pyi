@@ -1064,11 +1064,24 @@ class Relaxation:
         their directions and ``turning`` ones that work on the linear displacements.
         """
 
-    def at_rest(
-        self, linear: ArrayLike, forces: ArrayLike, close: float, most_steps: int
-    ) -> tuple[NDArray[np.float64], float, int]:
-        """Displacements where what is unbalanced would move at most a share ``close`` of what the
-        load does, by energy, or where the steps end; what is left, and steps.
+    def led(
+        self,
+        linear: ArrayLike,
+        patterns: Sequence[ArrayLike],
+        moved: Sequence[ArrayLike],
+        wanted: ArrayLike,
+        response: ArrayLike,
+        close: float,
+        most_steps: int,
+        goes_on: bool = False,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], list[float], float, int]:
+        """The body at rest where forces of k ``patterns`` have done the work ``wanted`` (k,) on it.
+
+        ``moved``: the linear displacement under each; ``response`` (k, k): how much of each a way
+        takes, linearly. From ``linear``, the linear displacement of the ways or, where it
+        ``goes_on``, one near the last rest. Linear and warped displacements, of how much of each
+        pattern the forces are, by what share of the load's work it is not at rest or not where it
+        is led, by energy (``close`` is enough), and steps.
         """
 
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:

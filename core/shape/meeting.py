@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from .rotation_strain.finger_load import FingerLoad
-from .shapes import LinearShape, Shape
+from .shapes import LinearShape, Shape, pressed_by
 
 Array = NDArray[np.float64]
 
@@ -206,12 +206,18 @@ class Meeting:
 def settled(body: SoftBody, shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Met:
     """The shape that meets these fingers, with all that it needs; waits for it.
 
+    Where the body comes to rest as deep as they are, led there by forces as theirs, it is that.
+
     Raises
     ------
     PalpateError
         It cannot be computed.
     """
-    shape.wait_for(np.unique(_joined(loads)[0]))
+    nodes, forces = _joined(loads)
+    shape.wait_for(np.unique(nodes))
+    rest = pressed_by(shape, loads, young_modulus).displacements
+    if rest is not None:
+        return Met(rest, body.deform(nodes, forces, young_modulus), 0.0)
     return Meeting(body, shape).settle(loads, young_modulus)
 
 

@@ -19,7 +19,7 @@ from ..errors import PalpateError
 from ..sentence import Sentence
 from .paper.paper_shape import PaperShape
 from .rotation_strain.finger_load import FingerLoad
-from .rotation_strain.firmness import Firmness
+from .rotation_strain.firmness import Firmness, Pressed
 from .rotation_strain.rotation_strain_shape import RotationStrainShape
 
 ShapeName: TypeAlias = Literal["linear", "paper", "real"]
@@ -156,9 +156,20 @@ def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float)
     PalpateError
         The shape cannot be computed.
     """
+    return pressed_by(shape, loads, young_modulus).firmness
+
+
+def pressed_by(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
+    """The same, and where the body's free surface comes to rest, if that was found.
+
+    Raises
+    ------
+    PalpateError
+        The shape cannot be computed.
+    """
     if isinstance(shape, RotationStrainShape):
-        return shape.firmness(loads, young_modulus)
-    return Firmness()
+        return shape.pressed(loads, young_modulus)
+    return Pressed(Firmness(), None)
 
 
 def shape_name(choice: str) -> ShapeName:

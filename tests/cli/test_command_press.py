@@ -143,7 +143,7 @@ def test_press_writes_the_shape_that_is_asked_for(name, cube_file, tmp_path, pal
     assert json.loads(printed)["shape"] == name
     touch = touch_nearest(cube, [0.021, 0.024, 0.06], [0, 0, -5e-3])
     made = shape(cube, name)
-    loads = [FingerLoad(touch.triangle, touch.nodal_forces)]
+    loads = [FingerLoad(touch.triangle, touch.nodal_forces, sticks=True)]
     wanted = settled(cube, made, loads, cube.young_modulus).displacements
     made.close()
     np.testing.assert_allclose(np.load(out), wanted, atol=1e-6 * np.abs(wanted).max())

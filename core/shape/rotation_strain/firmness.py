@@ -3,8 +3,9 @@
 A linear body pressed to some depth is under forces f and moved by u. The other is taken to the
 same depth: under forces of the same kind (the ones of a tool in proportion, those of a point that
 sticks turned as they have to be) that move what is pressed as far, each by the work f would do on
-it. The work along a straight way then tells the force: G times the linear one. It is found at half
-the depth and at the whole, and between goes as ::
+it. The work along a straight way then tells the force: G times the linear one. The body is led
+there quarter by quarter, each from the rest before; where it would turn aside under a tool whose
+forces stay in proportion, each of the tool's nodes is led. From the half and the end G goes as ::
 
     G(s) = 1 + a s + b s^2,    s^2 = elastic energy of the linear press over that of the whole one
 
@@ -23,18 +24,17 @@ from numpy.typing import NDArray
 
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad
-from .relaxation import Relaxation
+from .relaxation import Patterns, Relaxation, Rest
 
 Array = NDArray[np.float64]
 
-# Shares of the depth at which it is looked for; where nothing is found at the last, between.
-DEPTHS, BETWEEN = (0.5, 1.0), 0.75
-# Where it is taken for found: work that is missed, as a share of all; and rest.
-CLOSE, REST = 0.004, 0.002
-# Steps towards rest, and tries of forces.
-MOST_STEPS, MOST_TRIES = 100, 16
-# Forces change by no more than this share of the linear ones in a try.
-LARGEST_CHANGE = 0.4
+# Shares of the depth to which the body is led one after the other, and the one beside the last at
+# which firmness is told.
+DEPTHS, HALF = (0.25, 0.5, 0.75, 1.0), 0.5
+# Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
+CLOSE, MOST_STEPS = 0.002, 200
+# What carries less than this share of a tool's heaviest node is not led by itself.
+LIGHTEST = 1e-3
 # Bounds of what is believed.
 LEAST, MOST = 0.3, 3.0
 
@@ -67,6 +67,20 @@ class Firmness:
 
 
 @dataclass(frozen=True, eq=False)
+class Pressed:
+    """A press of a body of its law.
+
+    Attributes
+    ----------
+    firmness : of it.
+    displacements : (f, 3) of the free nodes, metres; None where no rest was found so deep.
+    """
+
+    firmness: Firmness
+    displacements: Array | None
+
+
+@dataclass(frozen=True, eq=False)
 class FirmBody:
     """A body whose firmness is looked for."""
 
@@ -79,17 +93,38 @@ class FirmBody:
         Where the body finds no rest under forces that would be right, to the depth to which it did:
         without any the linear one.
         """
-        found = _Press.of(self, loads)
-        if found is None or found.energy <= 0.0:
-            return Firmness()
-        known = [(0.0, 1.0)]
-        for depth in (*DEPTHS, BETWEEN):
-            share = found.to(depth, known[-1][1])
-            if share is not None:
-                known.append((depth, min(max(share, LEAST), MOST)))
-            if known[-1][0] == DEPTHS[-1] or len(known) == 1:
+        return self.pressed(loads).firmness
+
+    def pressed(self, loads: Sequence[FingerLoad]) -> Pressed:
+        """The same, and the body at rest there."""
+        whole = _Press.of(self, loads)
+        if whole is None:
+            return Pressed(Firmness(), None)
+        known, rest = self._led(whole)
+        if max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
+            by_nodes = _Press.of(self, loads, by_nodes=True)
+            others, other_rest = self._led(by_nodes or whole)
+            if max(others) > max(known):
+                known, rest = others, other_rest
+        deepest = max(known)
+        told = [(depth, known[depth]) for depth in sorted({0.0, min(HALF, deepest), deepest})]
+        moved = rest.displacements if rest is not None and deepest == DEPTHS[-1] else None
+        return Pressed(_through(told, whole.energy), moved)
+
+    def _led(self, press: _Press) -> tuple[dict[float, float], Rest | None]:
+        """G at all shares of the depth to which there is a rest, and the deepest."""
+        known, rest = {0.0: 1.0}, None
+        before = 0.0
+        for depth in DEPTHS:
+            ways = depth * press.ways
+            further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
+            share = float(further.forces @ press.ways) / (2.0 * depth * press.energy)
+            # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
+            if further.left > CLOSE or (press.is_of_tools and depth * share < before):
                 break
-        return _through(known, found.energy)
+            rest, before = further, depth * share
+            known[depth] = min(max(share, LEAST), MOST)
+        return known, rest
 
 
 def _through(known: Sequence[tuple[float, float]], energy: float) -> Firmness:
@@ -106,81 +141,50 @@ def _through(known: Sequence[tuple[float, float]], energy: float) -> Firmness:
     return Firmness(slope / math.sqrt(energy), bend / energy, reach, depth == DEPTHS[-1])
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class _Press:
-    """The forces that move what is pressed as far as the linear ones do.
+    """The linear press.
 
     Attributes
     ----------
-    patterns : (p, f, 3), what forces are made of.
-    linear : (p,), of how much of each the linear ones are.
+    patterns : what forces are made of.
     ways : (p,), work of each on the linear displacement.
-    compliance : (p, p), work of each on the linear displacement under another.
+    energy : elastic, J/Pa.
+    is_of_tools : and of no point.
     """
 
-    body: FirmBody
-    patterns: Array
-    linear: Array
+    patterns: Patterns
     ways: Array
-    compliance: Array
+    energy: float
+    is_of_tools: bool
 
     @classmethod
-    def of(cls, body: FirmBody, loads: Sequence[FingerLoad]) -> _Press | None:
+    def of(
+        cls, body: FirmBody, loads: Sequence[FingerLoad], by_nodes: bool = False
+    ) -> _Press | None:
+        """Of these loads; ``by_nodes``: each node of a tool's is led by itself."""
         patterns, linear = [], []
-        for load in loads:
-            whole = body.solid.on_free_nodes(load.nodes, load.forces)
-            if not whole.any():
-                continue
-            if not load.sticks:
+
+        def add(nodes: NDArray[np.int64], forces: Array, size: float) -> None:
+            whole = body.solid.on_free_nodes(nodes, forces)
+            if whole.any():
                 patterns.append(whole)
-                linear.append(1.0)
-                continue
-            for axis, size in enumerate(load.forces.sum(axis=0)):
-                each = load.weights[:, None] * np.eye(3)[axis]
-                patterns.append(body.solid.on_free_nodes(load.nodes, each))
                 linear.append(size)
-        if not patterns:
+
+        for load in loads:
+            if load.sticks:
+                for axis, size in zip(np.eye(3), load.forces.sum(axis=0), strict=True):
+                    add(load.nodes, load.weights[:, None] * axis, size)
+            elif by_nodes:
+                sizes = np.linalg.norm(load.forces, axis=1)
+                for one in np.flatnonzero(sizes > LIGHTEST * sizes.max(initial=0.0)):
+                    add(load.nodes[[one]], load.forces[[one]], 1.0)
+            else:
+                add(load.nodes, load.forces, 1.0)
+        if not any(linear):
             return None
-        made = np.stack(patterns)
-        moved = np.stack([body.solid.linear(one) for one in made])
-        compliance = np.einsum("pfi,qfi->pq", made, moved)
-        given = np.array(linear)
-        return cls(body, made, given, compliance @ given, compliance)
-
-    @property
-    def energy(self) -> float:
-        """Elastic energy of the linear press, J/Pa."""
-        return 0.5 * float(self.linear @ self.ways)
-
-    def to(self, depth: float, guess: float) -> float | None:
-        """G at a share of the depth; None where no forces that rest were found."""
-        wanted, forces = depth * self.ways, guess * depth * self.linear
-        inverse = np.linalg.pinv(self.compliance, rcond=1e-9, hermitian=True)
-        response = np.asarray(inverse, dtype=np.float64)
-        scale = math.sqrt(float(wanted @ response @ wanted))
-        last: tuple[Array, Array] | None = None
-        for _ in range(MOST_TRIES):
-            load = np.einsum("p,pfi->fi", forces, self.patterns)
-            rest = self.body.relaxation.at_rest(load, REST, MOST_STEPS)
-            if rest.left > 5.0 * REST:
-                return None
-            missed: Array = wanted - np.einsum("pfi,fi->p", self.patterns, rest.displacements)
-            if last is not None:
-                response = _learnt(response, forces - last[0], last[1] - missed)
-            if np.sqrt(abs(missed @ response @ missed)) <= CLOSE * scale:
-                return float(forces @ self.ways) / (depth * float(self.linear @ self.ways))
-            last = forces, missed
-            change = response @ missed
-            size = math.sqrt(float(change @ self.compliance @ change))
-            forces = forces + change * min(1.0, LARGEST_CHANGE * scale / max(size, 1e-300))
-        return None
-
-
-def _learnt(response: Array, change: Array, moved: Array) -> Array:
-    """Broyden's update of forces per way by a change of forces that ``moved`` places so far."""
-    through = response @ moved
-    along = float(change @ through)
-    if abs(along) <= 1e-3 * float(np.linalg.norm(change) * np.linalg.norm(through)):
-        return response
-    learnt: Array = response + np.outer((change - through) / along, change @ response)
-    return learnt
+        moved = np.stack([body.solid.linear(one) for one in patterns])
+        made, given = Patterns(np.stack(patterns), moved), np.array(linear)
+        ways: Array = made.compliance @ given
+        is_of_tools = not any(load.sticks for load in loads)
+        return cls(made, ways, 0.5 * float(given @ ways), is_of_tools)

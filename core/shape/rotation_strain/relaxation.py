@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import palpate_servo
@@ -40,14 +41,45 @@ class Rest:
 
     Attributes
     ----------
+    linear : (f, 3), the linear displacements that are warped to it.
     displacements : (f, 3) of the free nodes, metres.
-    left : what the unbalanced forces would still move, as a share of what the load does, by energy.
+    forces : (k,), of how much of each pattern they are.
+    left : what the unbalanced forces would still move, or what is missed of the ways, as a share
+        of what the load does, by energy.
     steps : that it took.
     """
 
+    linear: Array
     displacements: Array
+    forces: Array
     left: float
     steps: int
+
+
+@dataclass(frozen=True, eq=False)
+class Patterns:
+    """What the forces are made of that lead a body.
+
+    Attributes
+    ----------
+    forces : (k, f, 3), on the free nodes.
+    moved : (k, f, 3), the linear displacements under them.
+    """
+
+    forces: Array
+    moved: Array
+
+    @cached_property
+    def compliance(self) -> Array:
+        """Work (k, k) of each on the linear displacement under another."""
+        found: Array = np.einsum("pfi,qfi->pq", self.forces, self.moved)
+        return found
+
+    @cached_property
+    def response(self) -> Array:
+        """Of how much of each (k, k) a way takes, linearly."""
+        found = np.linalg.pinv(self.compliance, rcond=1e-9, hermitian=True)
+        return np.asarray(found, dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,11 +146,36 @@ class Relaxation:
         """
         return self.native.relaxed(linear, forces, steps, turning)
 
-    def at_rest(self, forces: Array, close: float, most_steps: int) -> Rest:
-        """The body at rest under ``forces`` (f, 3), to a share ``close`` of them; or as near to it
-        as ``most_steps`` lead.
+    def led(
+        self,
+        patterns: Patterns,
+        ways: Array,
+        close: float,
+        most_steps: int,
+        after: Rest | None = None,
+    ) -> Rest:
+        """The body at rest where forces of ``patterns`` have done the work ``ways`` (k,) on it.
+
+        Found to a share ``close``, or as near to it as ``most_steps`` lead. A force that stays may
+        have no rest where the body gives way; one that is led has. ``after``: the last rest under
+        the same patterns, from which it goes on in proportion.
         """
-        return Rest(*self.native.at_rest(self.linear(forces), forces, close, most_steps))
+        if after is None:
+            start: Array = np.einsum("p,pfi->fi", patterns.response @ ways, patterns.moved)
+        else:
+            before = np.einsum("pfi,fi->p", patterns.forces, after.displacements)
+            start = after.linear * (float(ways @ ways) / float(ways @ before))
+        linear, moved, forces, left, steps = self.native.led(
+            start,
+            list(patterns.forces),
+            list(patterns.moved),
+            ways,
+            patterns.response,
+            close,
+            most_steps,
+            after is not None,
+        )
+        return Rest(linear, moved, np.array(forces), left, steps)
 
     def linear(self, forces: Array) -> Array:
         """Linear displacements (f, 3), K^-1 F."""

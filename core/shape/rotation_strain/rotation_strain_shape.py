@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from threading import Lock
 from typing import Protocol
 
 import numpy as np
@@ -17,7 +18,7 @@ from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad
-from .firmness import FirmBody, Firmness
+from .firmness import FirmBody, Firmness, Pressed
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
@@ -64,6 +65,8 @@ class RotationStrainShape:
         self._plan = frame_plan(free_nodes) if plan is None else plan
         self._share = 0.0
         self._is_ended = False
+        self._pressing = Lock()
+        self._last: tuple[Sequence[FingerLoad], Pressed] | None = None
         worker = ThreadPoolExecutor(1, thread_name_prefix="palpate-rotation-strain")
         self._made: Future[_Made | None] = worker.submit(self._make)
         worker.shutdown(wait=False)
@@ -99,13 +102,19 @@ class RotationStrainShape:
         forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
         return made.displacements(np.asarray(nodes).reshape(-1), forces)
 
-    def firmness(self, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:
-        """See :func:`.shapes.firmness_of`; linear until prepared, and of a body on a lattice."""
+    def pressed(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
+        """How firmly it presses back, see :func:`.shapes.firmness_of`, and where its free surface
+        comes to rest; linear and nowhere until prepared, and for a body on a lattice.
+        """
         made = self._made.result() if self._made.done() else None
         if not isinstance(made, _OnOwnNodes):
-            return Firmness()
+            return Pressed(Firmness(), None)
         unit = [FingerLoad(load.nodes, load.forces / young_modulus, load.sticks) for load in loads]
-        return made.firm.under(unit)
+        with self._pressing:
+            # What is drawn and what is felt are asked for one after the other.
+            if self._last is None or not _same(self._last[0], unit):
+                self._last = unit, made.pressed(unit)
+            return self._last[1]
 
     def wait_for(self, nodes: NDArray[np.int64]) -> None:  # noqa: ARG002 - of no single place
         """Return when the preparation is done; it is the same for all ``nodes``.
@@ -144,6 +153,15 @@ class RotationStrainShape:
         return not self._is_ended
 
 
+def _same(loads: Sequence[FingerLoad], others: Sequence[FingerLoad]) -> bool:
+    return len(loads) == len(others) and all(
+        one.sticks == other.sticks
+        and np.array_equal(one.nodes, other.nodes)
+        and np.array_equal(one.forces, other.forces)
+        for one, other in zip(loads, others, strict=True)
+    )
+
+
 class _Made(Protocol):
     def displacements(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
@@ -164,6 +182,12 @@ class _OnOwnNodes:
     ) -> NDArray[np.float64]:
         held = self.solid.on_free_nodes(nodes, forces)
         return self.relaxation.relaxed(held, self.steps)[self.solid.surface]
+
+    def pressed(self, loads: Sequence[FingerLoad]) -> Pressed:
+        found = self.firm.pressed(loads)
+        if found.displacements is None:
+            return found
+        return replace(found, displacements=found.displacements[self.solid.surface])
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,9 @@ use crate::servo::paced::locked;
 use crate::solid::domains::Domains;
 use crate::solid::factor::Factor;
 use crate::solid::law::Law;
-use crate::solid::relaxation::{Load, Relaxation as Relaxing, Solid};
-use crate::solid::springs::Springs;
-use crate::solid::strained::{Strained, Term};
+use crate::solid::load::{Led, Load};
+use crate::solid::relaxation::{Relaxation as Relaxing, Solid};
+use crate::solid::strained::{Springs, Strained, Term};
 use crate::solid::warp::Warp;
 
 type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
@@ -138,6 +138,7 @@ impl Relaxation {
             let load = Load {
                 dead: &dead,
                 turning: turning.as_deref(),
+                led: None,
             };
             let mut relaxing = locked(&self.inner);
             relaxing.relax(&linear, &load, steps);
@@ -146,27 +147,49 @@ impl Relaxation {
         table(py, &warped)
     }
 
-    fn at_rest<'py>(
+    #[pyo3(signature = (linear, patterns, moved, wanted, response, close, most_steps, goes_on=false))]
+    #[expect(clippy::too_many_arguments, reason = "Python's names tell them apart")]
+    fn led<'py>(
         &self,
         py: Python<'py>,
         linear: Rows<'_>,
-        forces: Rows<'_>,
+        patterns: Vec<Rows<'_>>,
+        moved: Vec<Rows<'_>>,
+        wanted: Numbers<'_>,
+        response: Rows<'_>,
         close: f64,
         most_steps: usize,
-    ) -> PyResult<(Matrix<'py>, f64, usize)> {
+        goes_on: bool,
+    ) -> PyResult<(Matrix<'py>, Matrix<'py>, Vec<f64>, f64, usize)> {
         let nodes = self.nodes(py);
+        let fields = |name: &str, given: &[Rows<'_>]| {
+            (given.iter())
+                .map(|one| self::rows(name, one, nodes))
+                .collect::<PyResult<Vec<_>>>()
+        };
         let linear = self::rows("linear", &linear, nodes)?;
-        let dead = self::rows("forces", &forces, nodes)?;
-        let (warped, rest) = py.detach(|| {
-            let load = Load {
-                dead: &dead,
-                turning: None,
-            };
+        let (patterns, moved) = (fields("patterns", &patterns)?, fields("moved", &moved)?);
+        let response = response.as_array().iter().copied().collect();
+        let wanted = wanted.as_array().to_vec();
+        let mut led = Led::new(patterns, moved, wanted, response).ok_or_else(unfit)?;
+        let (linear, warped, pulls, rest) = py.detach(|| {
             let mut relaxing = locked(&self.inner);
-            let rest = relaxing.rest(&linear, &load, close, most_steps);
-            (relaxing.warped.clone(), rest)
+            let rest = relaxing.lead((&linear, goes_on), &mut led, close, most_steps);
+            let pulls = led.pulls(&relaxing.warped);
+            (
+                relaxing.linear.clone(),
+                relaxing.warped.clone(),
+                pulls,
+                rest,
+            )
         });
-        Ok((table(py, &warped)?, rest.left, rest.steps))
+        Ok((
+            table(py, &linear)?,
+            table(py, &warped)?,
+            pulls,
+            rest.left,
+            rest.steps,
+        ))
     }
 }
 

@@ -17,6 +17,7 @@ use super::domains::Nodal;
 use super::factor;
 use super::factor::Factor;
 use super::history::{Field, History, add, dot};
+use super::load::{Led, Load};
 use super::search::{bound, is_enough, shorter, step_length};
 use super::strained::Strained;
 use super::warp::{Room, Turned, Warp};
@@ -39,34 +40,6 @@ impl Solid {
     /// How many nodes are free.
     pub fn nodes(&self) -> usize {
         self.stiffness.len() / 3
-    }
-}
-
-/// Forces on the nodes.
-#[derive(Debug, Clone, Copy)]
-pub struct Load<'a> {
-    /// Those that keep their directions.
-    pub dead: &'a Nodal,
-    /// On the linear displacements, whose work does not change where the body turns.
-    pub turning: Option<&'a Nodal>,
-}
-
-impl Load<'_> {
-    fn work(&self, linear: &Nodal, warped: &Nodal) -> f64 {
-        let turning = self.turning.map_or(0.0, |forces| dot(forces, linear));
-        dot(self.dead, warped) + turning
-    }
-
-    /// Of all of it on a linear displacement.
-    fn linear_work(&self, linear: &Nodal) -> f64 {
-        self.work(linear, linear)
-    }
-
-    fn add_to(&self, times: f64, to: &mut Nodal) {
-        add(to, times, self.dead);
-        if let Some(turning) = self.turning {
-            add(to, times, turning);
-        }
     }
 }
 
@@ -96,6 +69,7 @@ pub struct Relaxation {
     before: Field,
     start: Field,
     spare: Field,
+    none: Field,
     stiffness: factor::Room<f32>,
     room: Room,
 }
@@ -117,7 +91,8 @@ impl Relaxation {
             direction: field.clone(),
             before: field.clone(),
             start: field.clone(),
-            spare: field,
+            spare: field.clone(),
+            none: field,
             stiffness: solid.stiffness.room(),
             room: solid.warp.room(),
             solid,
@@ -154,7 +129,7 @@ impl Relaxation {
         }
         self.leave_rest(linear, load, work);
         for step in 1..=steps {
-            let descent = self.direct();
+            let descent = self.direct(load);
             let most = bound(work, descent);
             let (before, slope) = (self.potential, -most * descent);
             self.before.copy_from_slice(&self.linear);
@@ -177,25 +152,50 @@ impl Relaxation {
         }
     }
 
-    /// Steps from the linear displacement of a load until what is unbalanced would move no more than a share
-    /// `close` of what the load does, or until `most` steps are done or none leads on.
-    pub fn rest(&mut self, linear: &Nodal, load: &Load<'_>, close: f64, most: usize) -> Rest {
+    /// Steps until what is led is where it is wanted, missed by no more than a share `close` of the way, by
+    /// energy, and at rest; what it ends with is the larger share. Where `goes_on`, from a linear displacement
+    /// that is not the load's own, with what was learnt before.
+    pub fn lead(
+        &mut self,
+        (linear, goes_on): (&Nodal, bool),
+        led: &mut Led,
+        close: f64,
+        most: usize,
+    ) -> Rest {
+        let none = std::mem::take(&mut self.none);
         self.linear.copy_from_slice(linear);
-        let work = load.linear_work(linear);
-        if work <= 0.0 {
-            self.warp();
-            return Rest {
-                left: 0.0,
-                steps: 0,
-            };
+        let work = Load::leading(&none, led).linear_work(linear);
+        if goes_on {
+            self.arrive(&Load::leading(&none, led));
+            self.find_slope(&Load::leading(&none, led));
+        } else {
+            self.leave_rest(linear, &Load::leading(&none, led), work);
         }
-        self.leave_rest(linear, load, work);
+        let mut steps = 0;
+        let rest = loop {
+            let rest = self.descend(&Load::leading(&none, led), work, close, most - steps);
+            steps += rest.steps;
+            let missed = led.is_missed_by(&self.warped);
+            let left = rest.left.max(missed);
+            if missed <= close || rest.left > close || steps == most {
+                break Rest { left, steps };
+            }
+            led.count_in(&self.warped);
+            self.arrive(&Load::leading(&none, led));
+            self.find_slope(&Load::leading(&none, led));
+        };
+        self.none = none;
+        rest
+    }
+
+    /// Steps from where it is.
+    fn descend(&mut self, load: &Load<'_>, work: f64, close: f64, most: usize) -> Rest {
         let mut rest = Rest {
             left: f64::INFINITY,
             steps: 0,
         };
         loop {
-            let descent = self.direct();
+            let descent = self.direct(load);
             rest.left = (descent / work).max(0.0).sqrt();
             if rest.left <= close || rest.steps == most {
                 return rest;
@@ -239,16 +239,21 @@ impl Relaxation {
         }
         // At rest the gradient is known without any work, so the way from there counts as a step.
         self.spare.fill([0.0; 3]);
-        load.add_to(-1.0, &mut self.spare);
+        self.before.fill([0.0; 3]);
+        load.take_from(&self.before, &mut self.spare);
+        load.take_turning_from(&mut self.spare);
         self.find_slope(load);
         (self.history).take(share, linear, &self.spare, &self.slope);
     }
 
     /// Finds the direction; what it promises, minus its slope.
-    fn direct(&mut self) -> f64 {
+    fn direct(&mut self, load: &Load<'_>) -> f64 {
         let (stiffness, room) = (&self.solid.stiffness, &mut self.stiffness);
         let solve = |right: &Nodal, solution: &mut Nodal| {
             stiffness.solve_freedoms(right, room, solution);
+            if let Some(led) = load.led {
+                led.hold(solution);
+            }
         };
         (self.history).direct(&self.slope, &mut self.spare, &mut self.direction, solve);
         -dot(&self.slope, &self.direction)
@@ -272,19 +277,17 @@ impl Relaxation {
     fn arrive(&mut self, load: &Load<'_>) {
         self.warp();
         let energy = (self.solid.strained).energy_and_forces(&self.warped, &mut self.forces);
-        self.potential = energy - load.work(&self.linear, &self.warped);
+        self.potential = energy + load.energy(&self.linear, &self.warped);
     }
 
     /// The gradient where it has arrived.
     fn find_slope(&mut self, load: &Load<'_>) {
-        add(&mut self.forces, -1.0, load.dead);
+        load.take_from(&self.warped, &mut self.forces);
         let mut slope = std::mem::take(&mut self.slope);
         let forces = std::mem::take(&mut self.forces);
         self.pull_back(&forces, &mut slope);
         (self.slope, self.forces) = (slope, forces);
-        if let Some(turning) = load.turning {
-            add(&mut self.slope, -1.0, turning);
-        }
+        load.take_turning_from(&mut self.slope);
     }
 }
 

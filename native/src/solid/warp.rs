@@ -18,7 +18,7 @@ use super::four::{
     Four, Matrix, axial, cross_matrix, inverse_above_identity, on_diagonal, plus, product, scaled,
     symmetric_part, transposed,
 };
-use super::springs::Springs;
+use super::strained::Springs;
 use super::turns::Turns;
 use crate::algebra::wide::widely;
 

@@ -61,24 +61,16 @@ def energy_of(body, load):
 @pytest.mark.parametrize("way", [(0.0, 0.0, 0.5), (0.0, 0.0, 1.2), (-0.2, 0.3, 1.0)])
 def test_a_point_that_bends_a_bar_feels_what_newtons_method_finds(bar, way):
     node, load = at_node(bar, [LENGTH, 0.5, 1.0], np.array(way))
-    firmness = bar.under([load])
+    pressed = bar.pressed([load])
+    moved, firmness = pressed.displacements, pressed.firmness
     assert firmness.is_whole
-    # Newton's method under forces, until their node is where the linear body has it.
-    forces = load.forces[0] * firmness.deepest
-    whole = np.zeros((bar.solid.node_count, 3))
-    columns = [
-        bar.solid.linear(np.where(np.arange(len(whole))[:, None] == node, axis, 0.0))[node]
-        for axis in np.eye(3)
-    ]
-    response = np.linalg.inv(np.stack(columns, axis=1))
-    for _ in range(40):
-        whole[node] = forces
-        start = equilibrium(bar.solid, whole).displacements[node]
-        missed = np.array(way) - start
-        if np.linalg.norm(missed) < 1e-4 * np.linalg.norm(way):
-            break
-        forces = forces + 0.5 * response @ missed
-    true = float(forces @ way) / float(load.forces[0] @ way)
+    assert np.linalg.norm(moved[node] - way) < 2e-3 * np.linalg.norm(way)
+    # Newton's method under what holds that node there.
+    forces = np.zeros_like(moved)
+    forces[node] = bar.solid.forces(moved)[node]
+    truth = equilibrium(bar.solid, forces).displacements
+    assert np.linalg.norm(truth[node] - way) < 0.01 * np.linalg.norm(way)
+    true = float(forces[node] @ way) / float(load.forces[0] @ way)
     assert firmness.deepest == pytest.approx(true, rel=0.01)
     assert abs(true - 1.0) > 0.01
 
@@ -126,3 +118,22 @@ def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
 def test_it_is_bounded():
     assert Firmness(100.0, 0.0, 1.0).at(1.0) == 3.0
     assert Firmness(-100.0, 0.0, 1.0).at(1.0) == 0.3
+
+
+def test_a_wall_presses_a_block_that_would_turn_aside_under_its_forces(block):
+    """Where no force in proportion has a rest: rubber under plates by two fifths."""
+    top = np.flatnonzero(block.solid.positions[:, 2] == 1.0)
+    unit = []
+    for axis in range(3):
+        for node in top:
+            forces = np.zeros((block.solid.node_count, 3))
+            forces[node, axis] = 1.0
+            unit.append(forces)
+    down = np.stack(unit[2 * len(top) :])
+    moved = np.stack([block.solid.linear(one)[top, 2] for one in down])
+    forces = np.zeros((len(top), 3))
+    forces[:, 2] = np.linalg.solve(moved, np.full(len(top), -0.4))
+    firmness = block.under([FingerLoad(block.solid.free[top], forces)])
+    assert firmness.is_whole
+    # Neo-Hookean rubber under a smooth wall on a base that holds it.
+    assert 1.45 < firmness.deepest < 1.75
