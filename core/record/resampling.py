@@ -23,8 +23,10 @@ MOST_FRAMES, MOST_TICKS = 1_048_574, 28_800_000
 CUT_OFF = 1.0 / 3.0
 # No hand moves a finger faster, m/s: it was set down elsewhere.
 FASTEST = 4.0
-# What is kept of the time before the first touch and after the last, s.
+# What is kept of the time before the first touch and after the last, s; and of the largest force,
+# what is more than to be laid on the surface.
 BESIDE_TOUCH = 0.5
+FELT = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +109,8 @@ def touched_part(samples: NDArray[np.void]) -> NDArray[np.void]:
     PalpateError
         Nothing was touched.
     """
-    touching = samples["time"][samples["force"].any(axis=1)]
+    strength = np.linalg.norm(samples["force"], axis=1)
+    touching = samples["time"][strength > FELT * strength.max(initial=0.0)]
     if not len(touching):
         raise PalpateError(
             "recording: the finger touched nothing; press while it records, and take that"
