@@ -36,7 +36,8 @@ NODE_SPREAD = 1.5
 
 # Seconds of fTetWild: NODE a node, and for following the surface DETAIL triangles^0.3 (bending /
 # diagonal) (epsilon / 0.003)^-0.7. It is not deterministic, and what makes it slow is not all in
-# these: of 25 runs on twenty shapes, 23 were within this factor, and the farthest off by three.
+# these: of 25 runs on twenty shapes, 23 were within this factor, and the farthest off by three;
+# a toy with thin fingers took five times as long.
 NODE_SECONDS = 4.0e-4
 DETAIL_SECONDS = 0.052
 DETAIL_EXPONENTS = (0.3, -0.7)
