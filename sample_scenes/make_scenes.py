@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
+sys.path[:0] = [str(HERE), str(HERE / "free"), str(HERE.parent / "demo")]
 
 
 def main() -> int:
@@ -29,11 +29,12 @@ def main() -> int:
         import finger_scenes
         import lifted_scene
         import scenes
+        import stacked_scene
 
         bpy.context.preferences.filepaths.save_version = 0
         stored = {"Cube": bodies.cube_tets()}
         stored |= {name.title(): bodies.stored_tets(name) for name in ("drumstick", "hare")}
-        stored |= finger_scenes.tets() | lifted_scene.tets()
+        stored |= finger_scenes.tets() | lifted_scene.tets() | stacked_scene.tets()
         for name, (make, finish) in {
             "cube": (lambda: [scenes.cube_scene()], None),
             "mouse": (lambda: [scenes.mouse_scene()], None),
@@ -44,6 +45,7 @@ def main() -> int:
             "animated": (finger_scenes.animated_scene, finger_scenes.bake_animation),
             "fingertip": (finger_scenes.fingertip_scene, None),
             "lifted": (lifted_scene.lifted_scene, lifted_scene.bake_lift),
+            "stacked": (stacked_scene.stacked_scene, stacked_scene.settle_stack),
             "large": (lambda: [scenes.hare_scene()], None),
         }.items():
             if options.only not in {None, name}:

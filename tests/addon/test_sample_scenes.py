@@ -59,6 +59,7 @@ def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
         ("imprint", ("Clay", "Foam"), 1),
         ("animated", ("Animated",), 30),
         ("lifted", ("Ball",), 36),
+        ("stacked", ("Lime",), 1),
     ],
 )
 def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
@@ -75,7 +76,7 @@ def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
     rest = {thing.name: rest_places(thing) for thing in things}
     alone = without_palpate(tmp_path)
     for one in objects:
-        assert np.abs(here[one] - rest[one]).max() > 1e-3
+        assert np.abs(here[one] - rest[one]).max() > 3e-4
         assert np.abs(here[one] - alone[one]).max() <= 1e-6
 
 
