@@ -445,8 +445,8 @@ class ToolSurface:
         near: what the mesh is too coarse for, as `core.near_field.NearCorrection.arrays` names it:
         for each node of the surface normals (s, 3), edges (s,), softness (s,), excess (s,), regular
         (s, 3, 3), slopes (3 s, 3, 3), far_nodes (s, 3), far_weights (s, 3); for each point shares
-        (P,), softness_of_points (P,), own (P, 3, 3); believed and short (two numbers each) and
-        poisson_ratio.
+        (P,), softness_of_points (P,), own (P, 3, 3), lifts (m P, 3), m for each; believed and short
+        (two numbers each) and poisson_ratio.
 
         Raises ValueError for a body that is not whole, or arrays that do not fit.
         """

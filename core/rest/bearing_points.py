@@ -20,6 +20,7 @@ from ..contact.near_field.surface_shape import CREASE_ANGLE, face_areas, face_no
 from ..contact.tool.tool_surface import Touchable, surface_and_correction
 from ..contact.tool.tools import Tool
 from ..mesh.tet_mesh import TetMesh
+from .definite import lifted
 
 Array = NDArray[np.float64]
 
@@ -30,6 +31,10 @@ SHARE_OF_RADIUS = 1.0 / 12.0
 # Nowhere closer or farther apart than these shares of the root of the surface: a flat side of a
 # cube has some fifty.
 CLOSEST, FARTHEST = 1.0 / 60.0, 1.0 / 14.0
+# Tools have points of their own where they ask for ones closer than this share of the supports'.
+# Between two sets the body gives way as its elements have it, without the near field that is
+# between points of one: where hands and floor meet at an edge that could give energy.
+FINER = 0.4
 # Curvature is that of the surface within so many of the farthest spacings.
 SEEN_AROUND = 1.5
 # Between places of which it is known it is that of so many of the nearest.
@@ -61,14 +66,15 @@ def even_spacing(body: SoftBody) -> float:
 
 
 def pressing_points(body: SoftBody, tool: Tool, spacing: float | None = None) -> Touchable:
-    """Points that a tool can press: as fine as it asks for and as the body is curved, or those of
-    the tool alone where ``spacing`` says how far the supports' lie apart.
+    """Points that a tool can press: the supports', or where it asks for much finer ones as fine as
+    that and as the body is curved, or those of the tool alone where ``spacing`` says how far the
+    supports' lie apart.
     """
     if spacing is not None:
         return surface_and_correction(body, tool)
     asked = spacing_on(body, tool.spacing)
     by_body = curved_spacings(body)
-    if asked >= by_body.max():
+    if asked >= FINER * by_body.max():
         return bearing_points(body)
     known = _touchable.setdefault(body, {})
     if -asked not in known:
@@ -78,7 +84,7 @@ def pressing_points(body: SoftBody, tool: Tool, spacing: float | None = None) ->
 
 def _touched(body: SoftBody, spacing: float | Array) -> Touchable:
     points = contact_points(body, spacing, rounded=True)
-    return points, near_correction(body, points)
+    return points, lifted(body, near_correction(body, points), even_spacing(body))
 
 
 def curved_spacings(body: SoftBody) -> Array:

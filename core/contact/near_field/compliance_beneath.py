@@ -77,6 +77,8 @@ class NearCorrection:
     shares : float64 (P,), 0 where plain finite elements stay, else up to 1.
     softness : float64 (P,), 1 over the factor of Young's modulus around each point.
     own : float64 (P, 3, 3), for each point and its own force, m / N at 1 Pa, symmetric.
+    lifts : float64 (P, 3, m), m ways of the points; a force along one moves all along it, by their
+        products, in root of m / N at 1 Pa. None but on free bodies (``core/rest/definite.py``).
     """
 
     field: RegularField
@@ -84,6 +86,7 @@ class NearCorrection:
     shares: NDArray[np.float64]
     softness: NDArray[np.float64]
     own: NDArray[np.float64]
+    lifts: NDArray[np.float64] = dataclasses.field(default_factory=lambda: np.empty((0, 3, 0)))
     _last: _Known = dataclasses.field(default_factory=lambda: _Known(), repr=False)  # noqa: PLW0108  defined below
 
     def between(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -109,6 +112,10 @@ class NearCorrection:
             self._last.points, self._last.blocks = i.copy(), blocks
         return blocks.copy()
 
+    def lifted(self, lifts: NDArray[np.float64]) -> NearCorrection:
+        """The same with other ``lifts`` (P, 3, m)."""
+        return NearCorrection(self.field, self.points, self.shares, self.softness, self.own, lifts)
+
     def arrays(self) -> dict[str, object]:
         """Arrays for the native thread, which computes the pairs itself."""
         field = self.field
@@ -125,6 +132,7 @@ class NearCorrection:
             "shares": self.shares,
             "softness_of_points": self.softness,
             "own": self.own,
+            "lifts": self.lifts.transpose(0, 2, 1).reshape(-1, 3),
             "believed": (never, wholly),
             "short": (SHORT_WITHIN * outer, SHORT_NOWHERE * outer),
             "poisson_ratio": field.body.poisson_ratio,
@@ -141,6 +149,8 @@ class NearCorrection:
         turned = i[apart] > j[apart]
         found[turned] = found[turned].transpose(0, 2, 1)
         blocks[apart] = found
+        if self.lifts.size:
+            blocks += np.einsum("kxm,kym->kxy", self.lifts[i], self.lifts[j])
         return blocks
 
 

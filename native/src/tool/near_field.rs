@@ -54,6 +54,9 @@ pub struct NearField {
     pub nodes: Vec<NodeField>,
     /// For each contact point.
     pub points: Vec<PointField>,
+    /// Ways of all points, of one after the other: a force along one moves all along it, by their
+    /// products, in root of m/N at 1 Pa. `core/rest/definite.py` tells what for.
+    pub lifts: Vec<DVec3>,
     /// Distances in edges: within the first finite elements are not believed, from the second on
     /// they are wholly.
     pub believed: [f64; 2],
@@ -83,6 +86,7 @@ impl NearField {
             |f: &PointField| f.share.is_finite() && f.softness.is_finite() && f.own.is_finite();
         self.nodes.iter().all(node)
             && self.points.iter().all(point)
+            && self.lifts.iter().all(|way| way.is_finite())
             && 0.0 <= self.believed[0]
             && self.believed[0] < self.believed[1]
             && self.believed[1].is_finite()
@@ -97,6 +101,18 @@ impl NearField {
         let [low, high] = SAME_SURFACE;
         let alike = ((normals[0].dot(normals[1]) - low) / (high - low)).clamp(0.0, 1.0);
         self.points[p as usize].share * self.points[q as usize].share * alike
+    }
+
+    /// What is added between two points, or to one and its own force, that energy is nowhere negative.
+    #[inline]
+    pub(super) fn lifted(&self, p: u32, q: u32) -> DMat3 {
+        let ways = self.lifts.len() / self.points.len();
+        let of = |point: u32| &self.lifts[point as usize * ways..][..ways];
+        let mut block = DMat3::ZERO;
+        for (&seen, &loaded) in of(p).iter().zip(of(q)) {
+            block += DMat3::from_cols(seen * loaded.x, seen * loaded.y, seen * loaded.z);
+        }
+        block
     }
 
     /// H between two points: displacement of the first per force on the other.

@@ -218,6 +218,9 @@ fn fingerprint(points: &[Point], near: Option<&NearField>) -> u64 {
     for field in near.iter().flat_map(|near| &near.points) {
         hasher.write_u64(field.own.x_axis.x.to_bits());
     }
+    for way in near.iter().flat_map(|near| &near.lifts) {
+        hasher.write_u64(way.x.to_bits());
+    }
     hasher.finish()
 }
 

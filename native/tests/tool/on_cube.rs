@@ -71,6 +71,7 @@ pub fn own_parts(body: &Body, points: &[Point]) -> NearField {
     NearField {
         nodes: vec![node; body.nodes.len()],
         points: vec![point; points.len()],
+        lifts: Vec::new(),
         believed: [0.6, 1.0],
         short: [2.2, 4.4],
         poisson_ratio: 0.3,

@@ -11,7 +11,7 @@ use crate::tool::near_field::{NearField, NodeField, PointField};
 use crate::python::vectors::{matrices, vectors};
 
 /// The arrays that `core/contact/near_field/compliance_beneath.py` gives.
-const NEAR_FIELD: [&str; 14] = [
+const NEAR_FIELD: [&str; 15] = [
     "believed",
     "short",
     "poisson_ratio",
@@ -26,6 +26,7 @@ const NEAR_FIELD: [&str; 14] = [
     "shares",
     "softness_of_points",
     "own",
+    "lifts",
 ];
 
 /// From the arrays that `core/contact/near_field/compliance_beneath.py` names.
@@ -60,16 +61,18 @@ pub fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
     let far_weights = vectors("far_weights", &array("far_weights")?.extract()?)?;
     let [shares, softness_of_points] = [numbers("shares")?, numbers("softness_of_points")?];
     let own = blocks("own")?;
+    let lifts = vectors("lifts", &array("lifts")?.extract()?)?;
     let (nodes, points) = (normals.len(), shares.len());
     if [edges.len(), softness.len(), regular.len(), excess.len()] != [nodes; 4]
         || far_nodes.as_array().dim() != (nodes, 3)
         || far_weights.len() != nodes
         || slopes.len() != 3 * nodes
         || [softness_of_points.len(), own.len()] != [points; 2]
+        || lifts.len() % points.max(1) != 0
     {
         return Err(PyValueError::new_err(format!(
             "near is of {nodes} nodes (by normals) and {points} contact points (by shares), and not all of \
-             its arrays have a row for each (three of slopes); give what native_tool gives"
+             its arrays have a row for each (three of slopes, of lifts alike many); give what native_tool gives"
         )));
     }
     let node = |k: usize| NodeField {
@@ -92,6 +95,7 @@ pub fn near_field(arrays: &Bound<'_, PyDict>) -> PyResult<NearField> {
     Ok(NearField {
         nodes: (0..nodes).map(node).collect(),
         points: (0..points).map(point).collect(),
+        lifts,
         believed,
         short,
         poisson_ratio,

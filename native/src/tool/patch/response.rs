@@ -22,11 +22,11 @@ impl Patch {
         };
         if point == other {
             let whole = self.resolved(ground, p, q) + near.points[point as usize].own;
-            return (whole + whole.transpose()) * 0.5;
+            return (whole + whole.transpose()) * 0.5 + near.lifted(point, point);
         }
         let normals = [p.normal, q.normal];
         let share = near.share(point, other, normals);
-        let mut sum = DMat3::ZERO;
+        let mut sum = near.lifted(point, other);
         if share < 1.0 {
             sum += self.resolved(ground, p, q) * (1.0 - share);
         }
