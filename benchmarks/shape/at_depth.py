@@ -68,12 +68,13 @@ ISSUED = {1 / 12: 5.56, 1 / 3: 43.9, 1 / 2: 78.9, 3 / 4: 140.6, 1.0: 208.4, 4 / 
 AGREEMENT = 0.08
 # The real force: to half a radius and a fifth of the thickness, and beyond.
 NEAR, FAR = 0.05, 0.10
-# Presses by which it is farther off: a point by two fifths of the mouse's thickness crushes what it
-# presses, and no rest was found so deep; a wall on the mouse bends its nose.
+# Presses by which it is farther off: a point by two fifths of the thickness may crush what it
+# presses, and no rest is found so deep; a wall on the mouse bends its nose.
 BEYOND = (
     "mouse-1.7k, wall, 0.2",
     "mouse-1.7k, point 1, 0.4",
     "mouse-1.7k, point 2, 0.4",
+    "drumstick, point 2, 0.4",
 )
 
 

@@ -33,6 +33,8 @@ Array = NDArray[np.float64]
 DEPTHS, HALF = (0.25, 0.5, 0.75, 1.0), 0.5
 # Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
 CLOSE, MOST_STEPS = 0.002, 200
+# What so many steps may leave of it where it counts as found: of forces it is less, by square.
+ENOUGH = 0.01
 # What carries less than this share of a tool's heaviest node is not led by itself.
 LIGHTEST = 1e-3
 # Bounds of what is believed.
@@ -120,7 +122,7 @@ class FirmBody:
             further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
             share = float(further.forces @ press.ways) / (2.0 * depth * press.energy)
             # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
-            if further.left > CLOSE or (press.is_of_tools and depth * share < before):
+            if further.left > ENOUGH or (press.is_of_tools and depth * share < before):
                 break
             rest, before = further, depth * share
             known[depth] = min(max(share, LEAST), MOST)
