@@ -116,9 +116,19 @@ class Pile:
         PalpateError
             A force is no number.
         """
+        self.tick(seconds)
+        return self.rest
+
+    def tick(self, seconds: float = 1e-3) -> None:
+        """The same without telling where the bodies are.
+
+        Raises
+        ------
+        PalpateError
+            A force is no number.
+        """
         with rest_errors(ValueError, RuntimeError):
             self._native.tick(seconds)
-        return self.rest
 
     def settle(self) -> tuple[Rest, ...]:
         """Go on until tools are at their goals, wrenches on all bodies cancel and nothing changes.

@@ -1,0 +1,97 @@
+"""What a tick of a pile takes, against bodies and contacts; two bodies and a finger at 1 kHz.
+
+    python benchmarks/rest/pile_cost.py [--cells N] [--ticks N] [--bodies N ...]
+
+Cubes of 50 mm with about 1,700 nodes stand on each other, with friction and without; times are the
+processor's, of the tick alone. Two cubes are then pressed by a fingertip of 8 mm. The exit status
+tells whether 8 bodies take less than a frame of 16 ms, and the press with a finger 300 us at the
+median and 700 at the worst.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+import numpy as np
+
+from palpate.core.body.soft_body import SoftBody
+from palpate.core.contact.tool.pose import Pose
+from palpate.core.contact.tool.tools import sphere
+from palpate.core.pile.pile import Pile
+from palpate.core.pile.pile_settings import PileSettings
+from palpate.core.rest.support import Floor
+from palpate.tests.bodies.free_shapes import free_block
+
+DT = 1e-3
+# Cubes are laid down so far above what they come to rest on, m, and given so many ticks for it.
+ABOVE, LANDING = 2e-4, 60
+TIP = sphere(0.008)
+FRAME, FRAMED = 16.0, 8
+MEDIAN, WORST = 0.3, 0.7
+
+
+def stack(body: SoftBody, count: int, friction: float, *, pressed: bool) -> Pile:
+    """Some cubes on each other on a floor, and a fingertip above the topmost."""
+    size = float(np.ptp(body.mesh.nodes[:, 2]))
+    bodies = [(body, Pose.at([0.0, 0.0, ABOVE + k * (size + ABOVE)])) for k in range(count)]
+    tools = [(TIP, tip_above(body, count))] if pressed else []
+    return Pile(bodies, [Floor(friction=friction)], tools, settings=PileSettings(friction=friction))
+
+
+def tip_above(body: SoftBody, count: int, depth: float = 0.0) -> Pose:
+    """Where the fingertip is above so many cubes, ``depth`` m lower than it waits."""
+    top = count * (float(np.ptp(body.mesh.nodes[:, 2])) + ABOVE) + TIP.radius + ABOVE
+    return Pose.at([0.024, 0.026, top - depth])
+
+
+def costs(pile: Pile, goals: list[Pose], ticks: int) -> tuple[np.ndarray, int]:
+    """Processor's time of each tick, (ticks,), ms, and how many contacts press at its end."""
+    took = []
+    for tick in range(ticks):
+        if goals:
+            pile.lead([goals[tick]])
+        start = time.process_time()
+        pile.tick(DT)
+        took.append(1e3 * (time.process_time() - start))
+    rests = pile.rest
+    borne = sum(len(touch.pushes) for rest in rests for touch in (*rest.tools, *rest.supports))
+    shared = sum(len(touch.pushes) for rest in rests for touch in rest.others)
+    return np.array(took), borne + shared
+
+
+def main() -> int:
+    """Print times of all piles; the exit status tells whether they are as claimed."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--cells", type=int, default=11)
+    parser.add_argument("--ticks", type=int, default=60)
+    parser.add_argument("--bodies", type=int, nargs="+", default=[2, 4, 8, 16])
+    options = parser.parse_args()
+    body = free_block((0.05, 0.05, 0.05), (options.cells,) * 3, young_modulus=30_000.0)
+    print(f"cubes of {len(body.mesh.nodes)} nodes; ms a tick")
+    failed = False
+    print("bodies  friction  touches  median   worst")
+    for count in options.bodies:
+        for friction in (0.0, 0.5):
+            pile = stack(body, count, friction, pressed=False)
+            costs(pile, [], LANDING)
+            took, touches = costs(pile, [], options.ticks)
+            median = float(np.median(took))
+            failed = failed or (count <= FRAMED and median > FRAME)
+            print(f"{count:6}{friction:10.1f}{touches:9}{median:8.2f}{took.max():8.2f}", flush=True)
+    for friction in (0.0, 0.5):
+        pile = stack(body, 2, friction, pressed=True)
+        costs(pile, [], LANDING)
+        depths = 0.004 * np.sin(np.pi * np.linspace(0.0, 1.0, 10 * options.ticks))
+        goals = [tip_above(body, 2, depth) for depth in depths]
+        took, _ = costs(pile, goals, len(goals))
+        median, worst = float(np.median(took)), float(took.max())
+        failed = failed or median > MEDIAN or worst > WORST
+        print(f"two and a finger, friction {friction}: median {median:.3f}, worst {worst:.3f}")
+    print("as claimed" if not failed else "NOT AS CLAIMED")
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
