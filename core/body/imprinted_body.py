@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import closest_points
 
+from ..mesh.surface import Surface
 from ..mesh.tet_mesh import TetMesh
 from .soft_body import SoftBody
 
@@ -30,8 +31,11 @@ class DrawnImprint:
 
     def at(self, places: Array) -> Array:
         """How far it moved the places (k, 3) of the surface at rest, metres."""
-        triangle, alpha = closest_points(self.vertices, self.triangles, places)
-        found: Array = np.einsum("kc,kcx->kx", alpha, self.moved[self.triangles[triangle]])
+        # Drawn meshes have triangles without area, as at the poles of half a sphere.
+        wide = Surface(self.vertices, self.triangles).areas > 0.0
+        triangles = self.triangles[wide]
+        triangle, alpha = closest_points(self.vertices, triangles, places)
+        found: Array = np.einsum("kc,kcx->kx", alpha, self.moved[triangles[triangle]])
         return found
 
 

@@ -45,6 +45,13 @@ def test_a_body_whose_imprint_is_a_shift_is_felt_there_as_it_was(cube):
     assert body.key == cube.key
 
 
+def test_triangles_without_area_are_left_out(cube):
+    drawn = on_top(lambda vertices: np.full_like(vertices, -0.002))
+    flat = np.vstack([[[0, 0, 1]], drawn.triangles, [[0, 1, 2]]])
+    with_flat = DrawnImprint(drawn.vertices, flat, drawn.moved)
+    assert imprinted(cube, with_flat).mesh.nodes == pytest.approx(imprinted(cube, drawn).mesh.nodes)
+
+
 def test_a_ball_in_a_hollow_is_as_firm_as_hertz_has_it(cube):
     """1 / R = 1 / R_ball - 1 / R_hollow, and the force goes by the root of R."""
     hollow, deep = 2.0 * RADIUS, 0.0015
