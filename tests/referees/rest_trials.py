@@ -32,8 +32,6 @@ GRAVITY = 9.81
 MOST_GAINED = 1e-4
 # Of the size: how far the surface may be in the floor between contact points.
 MOST_SUNK = 0.05
-# Of the size: how far from a pressed point the surface may be where that bears it.
-BORNE = 0.07
 # Of the size: how far the surface may stretch.
 MOST_STRETCHED = 1.5
 # Of the weight, while it still rolls.
@@ -129,19 +127,9 @@ class _Trial:
         return rest.elastic + self.weight * float(rest.centre[2])
 
     def look(self, rest: Rest) -> None:
-        """Take down how deep it is in the floor, and how far it is stretched.
-
-        Where a contact point is pressed, the surface is where that is: a tip gives way farther than
-        its element knows, which is drawn on the floor.
-        """
+        """Take down how deep it is in the floor, and how far it is stretched."""
         surface = rest.surface()
-        borne = rest.supports[0].places
-        deepest = float(-borne[:, 2].min()) if len(borne) else 0.0
-        free = surface
-        if len(borne):
-            away = np.linalg.norm(surface[:, None] - borne, axis=2).min(axis=1)
-            free = surface[away > BORNE * self.size]
-        self.sunk = max(self.sunk, deepest / self.size, float(-free[:, 2].min()) / self.size)
+        self.sunk = max(self.sunk, float(-surface[:, 2].min()) / self.size)
         self.stretched = max(self.stretched, _reach(surface) / self.reach)
 
 
