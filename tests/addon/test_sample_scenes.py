@@ -95,6 +95,7 @@ def test_clay_keeps_what_foam_forgets(palpate, tmp_path):
     assert left["Foam", 60] < 0.01 * left["Foam", 1]
 
 
+@pytest.mark.at_length
 def test_the_bone_in_the_drumstick_is_felt_and_only_where_it_is(palpate, tmp_path):
     thing = opened("drumstick", tmp_path)
     boned = {place: force(thing, place) for place in (OVER_BONE, OVER_MEAT)}

@@ -111,7 +111,9 @@ def test_a_cluster_bakes_as_this_computer_does(meshes, palpate, two_workers):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are of Unix")
-@pytest.mark.parametrize("workers", ["threads", "cluster"])
+@pytest.mark.parametrize(
+    "workers", ["threads", pytest.param("cluster", marks=pytest.mark.at_length)]
+)
 def test_an_interrupt_ends_all_bakes(long_meshes, workers, request, tmp_path):
     where = ["--jobs", "2"]
     scratch = tmp_path / "scratch"

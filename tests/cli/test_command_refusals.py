@@ -145,7 +145,9 @@ def test_the_program_ends_with_the_status_and_the_line(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are of Unix")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.at_length)]
+)
 def test_a_bake_that_is_stopped_leaves_nothing(tmp_path, number):
     trimesh.creation.icosphere(subdivisions=4).export(tmp_path / "ball.stl")
     scratch = tmp_path / "scratch"

@@ -20,6 +20,7 @@ def test_young_modulus_is_told_on_the_scales_that_reach_it(figures_of):
     assert figures_of("shore", "--young", "1.142e6")["shore_a"] == pytest.approx(30, abs=0.1)
 
 
+@pytest.mark.at_length
 def test_foam_is_told_by_the_force_that_it_is_sold_by(figures_of, refusal):
     figures = figures_of("ild", "80")
     assert figures["ild_25_n"] == pytest.approx(80.0)

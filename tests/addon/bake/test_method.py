@@ -115,6 +115,7 @@ def test_another_form_is_said_and_taken_over(compressed):
     assert status(compressed).changed == ()
 
 
+@pytest.mark.at_length
 def test_more_pins_of_a_compressed_body(compressed):
     compressed.palpate.pin_fraction = 0.3
     assert status(compressed).pins.fit.name in {"MORE", "OTHER"}

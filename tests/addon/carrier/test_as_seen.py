@@ -162,6 +162,7 @@ def test_a_mirrored_half_is_baked_whole_and_dented_across_its_closed_seam(palpat
     np.testing.assert_allclose(opened[thing.name], seen, rtol=0, atol=1e-6)
 
 
+@pytest.mark.at_length
 def test_a_finer_mesh_takes_the_dent_over_by_place_and_a_new_bake_keeps_the_carrier(palpate):
     thing = default_cube()
     subdivision = thing.modifiers.new("Subdivision", "SUBSURF")

@@ -36,6 +36,7 @@ def longest_edge(mesh):
     return np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1).max()
 
 
+@pytest.mark.at_length
 def test_a_dent_among_the_widest_faces_of_a_flat_mesh_is_fine(ball):
     assert longest_edge(ball.data) > 0.4 * RADIUS
     assert bpy.ops.palpate.stroke(**SOUTH) == {"FINISHED"}

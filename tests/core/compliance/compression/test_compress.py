@@ -91,6 +91,7 @@ def test_no_column_is_off_by_more_than_the_tolerance(any_body, tolerance):
     assert worst <= compressed.column_error <= tolerance
 
 
+@pytest.mark.at_length
 def test_near_the_incompressible_limit_the_tolerance_holds_too(mouse_mesh):
     mesh, fixed = mouse_mesh
     exact = exact_compliance(mesh, fixed, 0.49)

@@ -29,7 +29,7 @@ def points(block):
     return nodes_as_points(block, CORE * ELEMENT)
 
 
-@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("near", [pytest.param(False, marks=pytest.mark.at_length), True])
 def test_a_sphere_is_resisted_as_hertz_says(block, points, near):
     correction = near_correction(block, points) if near else None
     rows = hertz(block, points, correction, lift(block, points, ELEMENT), CORE)
