@@ -74,7 +74,6 @@ BEYOND = (
     "mouse-1.7k, wall, 0.2",
     "mouse-1.7k, point 1, 0.4",
     "mouse-1.7k, point 2, 0.4",
-    "drumstick, point 2, 0.4",
 )
 
 
