@@ -56,11 +56,7 @@ def _show(scene: bpy.types.Scene, cubes: list[bpy.types.Object]) -> None:
     """Set the frames, and two cubes before a backdrop, lit and in view."""
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
     aim = (0.0, 0.0, 0.023)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.10, -0.40, 0.20), aim, 88.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, cubes[0], 0.21, aim)
+    studio.present(scene, cubes[0], aim, (0.10, -0.40, 0.20), 88.0, 0.21)
 
 
 def keep_pinches() -> None:
@@ -178,10 +174,7 @@ def fingertip_scene() -> list[bpy.types.Object]:
     chosen.source_empty = empty
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
     aim = (-0.004, -0.004, 0.042)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, (0.0, 0.0, 0.04))
-    studio.camera(scene, (0.23, -0.33, 0.19), aim, 76.0)
-    studio.render_settings(scene)
+    studio.present(scene, mouse, aim, (0.23, -0.33, 0.19), 76.0, 0.16, lit=(0.0, 0.0, 0.04))
     # Near enough for the pressure under a finger to be seen.
     studio.open_view(scene, mouse, 0.16, (-0.012, -0.010, 0.046))
     studio.show_empties()

@@ -57,11 +57,7 @@ def mouse_scene() -> bpy.types.Object:
     scene = studio.empty_scene("Mouse")
     mouse = plush_mouse(scene)
     aim = (-0.004, -0.004, 0.030)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, (0.0, 0.0, 0.03))
-    studio.camera(scene, (0.23, -0.33, 0.215), aim, 88.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, mouse, 0.23, aim)
+    studio.present(scene, mouse, aim, (0.23, -0.33, 0.215), 88.0, 0.23, lit=(0.0, 0.0, 0.03))
     return mouse
 
 
@@ -97,11 +93,7 @@ def cube_scene() -> bpy.types.Object:
     scene = studio.empty_scene("Cube")
     cube = paper_cube(scene, "Cube")
     aim = (0.0, 0.0, 0.023)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.23, -0.28, 0.20), aim, 110.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, cube, 0.14, aim)
+    studio.present(scene, cube, aim, (0.23, -0.28, 0.20), 110.0, 0.14)
     return cube
 
 
@@ -144,11 +136,7 @@ def drumstick_scene() -> bpy.types.Object:
     bodies.set_stiff(drumstick, BONE, BONE_FACTOR)
     bodies.set_mesh_size(drumstick, bodies.DRUMSTICK_SIZE)
     aim = (0.016, 0.0, 0.026)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.21, -0.33, 0.23), aim, 82.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, drumstick, 0.26, aim)
+    studio.present(scene, drumstick, aim, (0.21, -0.33, 0.23), 82.0, 0.26)
     return drumstick
 
 
@@ -157,12 +145,8 @@ def hare_scene() -> bpy.types.Object:
     scene = studio.empty_scene("Large")
     hare = plush_hare(scene)
     aim = (0.0, 0.0, 0.094)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, (0.0, 0.0, 0.10))
-    studio.camera(scene, (0.36, -0.46, 0.19), aim, 92.0)
-    studio.render_settings(scene)
+    studio.present(scene, hare, aim, (0.36, -0.46, 0.19), 92.0, 0.42, lit=(0.0, 0.0, 0.10))
     scene.render.resolution_x, scene.render.resolution_y = 800, 960
-    studio.open_view(scene, hare, 0.42, aim)
     return hare
 
 

@@ -1,4 +1,4 @@
-"""What both scenes share: backdrop, lights, camera, render settings and the open 3D view."""
+"""What all scenes share: backdrop, lights, camera, render settings and the open 3D view."""
 
 import math
 
@@ -6,6 +6,8 @@ import bpy
 from mathutils import Vector
 
 Colour = tuple[float, float, float]
+
+TABLE_COLOUR = (0.13, 0.27, 0.29)
 
 
 def empty_scene(name: str) -> bpy.types.Scene:
@@ -20,6 +22,23 @@ def empty_scene(name: str) -> bpy.types.Scene:
     scene.unit_settings.length_unit = "MILLIMETERS"
     scene.tool_settings.use_snap = False
     return scene
+
+
+def present(
+    scene: bpy.types.Scene,
+    body: bpy.types.Object,
+    aim: Colour,
+    camera_at: Colour,
+    lens: float,
+    distance: float,
+    lit: Colour | None = None,
+) -> None:
+    """The body on the table, ready to be rendered and in view from `distance`; metres."""
+    backdrop(scene, TABLE_COLOUR, 0.30)
+    lights(scene, aim if lit is None else lit)
+    camera(scene, camera_at, aim, lens)
+    render_settings(scene)
+    open_view(scene, body, distance, aim)
 
 
 def link(scene: bpy.types.Scene, name: str, data: bpy.types.ID | None) -> bpy.types.Object:

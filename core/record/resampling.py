@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,13 +86,13 @@ def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) 
 
     def resampled(values: Array) -> Array:
         at = np.empty(len(wanted))
-        ends = [*starts[1:], len(times)]
-        for start, end in zip(starts, ends, strict=True):
+        for start, end in pairwise([*starts, len(times)]):
             even = np.arange(times[start], times[end - 1] + 0.5 * step, step)
             own_ticks = np.interp(even, times[start:end], values[start:end])
-            later = wanted >= times[start]
             smooth = gaussian_filter1d(own_ticks, spread, mode="nearest")
-            at[later] = np.interp(wanted[later], even, smooth)
+            until = times[end] if end < len(times) else np.inf
+            shown = slice(*np.searchsorted(wanted, [times[start], until]))
+            at[shown] = np.interp(wanted[shown], even, smooth)
         return at
 
     def each(vectors: Array) -> Array:

@@ -44,7 +44,7 @@ class FreePile:
         PalpateError
             A force is no number.
         """
-        self.pile.step(seconds)
+        self.pile.tick(seconds)
 
     def settle(self) -> list[Lying]:
         """Where they come to rest, one after the other.

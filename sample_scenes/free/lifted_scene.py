@@ -41,12 +41,8 @@ def lifted_scene() -> list[bpy.types.Object]:
             hand.location = (side * (RADIUS + HAND[0] + gap), 0.0, RADIUS + lift)
             hand.keyframe_insert("location", frame=frame)
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
     aim = (0.0, 0.0, 0.05)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.16, -0.36, 0.14), aim, 70.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, ball, 0.3, aim)
+    studio.present(scene, ball, aim, (0.16, -0.36, 0.14), 70.0, 0.3)
     return [ball]
 
 

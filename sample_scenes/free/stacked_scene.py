@@ -33,11 +33,7 @@ def stacked_scene() -> list[bpy.types.Object]:
         cube.palpate.colliders = jelly
         cubes.append(cube)
     aim = (0.0, 0.0, 0.044)
-    studio.backdrop(scene, (0.13, 0.27, 0.29), 0.30)
-    studio.lights(scene, aim)
-    studio.camera(scene, (0.18, -0.30, 0.15), aim, 72.0)
-    studio.render_settings(scene)
-    studio.open_view(scene, cubes[0], 0.22, aim)
+    studio.present(scene, cubes[0], aim, (0.18, -0.30, 0.15), 72.0, 0.22)
     return cubes
 
 

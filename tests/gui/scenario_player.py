@@ -78,21 +78,18 @@ class Player:
         self.write_report()
         mark(f"scenario begins: {name}")
         self.deadline, self.draws_before = time.monotonic() + self.job["limit"], self.draws
-        try:
-            self.scenario = self.prepare(name)
-        except Exception:  # noqa: BLE001 -- whatever it is, pytest shows it
-            self.end(traceback.format_exc())
-            return
         faulthandler.dump_traceback_later(self.job["limit"] + GRACE_SECONDS, exit=True)
-        self.wake_after(None)
+        self.scenario = self.played(name)
+        self.wake_after(0.0)
 
-    def prepare(self, name: str) -> Wait:
-        """Return the scenario, in a fresh scene, at its beginning."""
+    def played(self, name: str) -> Wait:
+        """The scenario, in a fresh scene."""
         bpy.ops.wm.read_homefile(use_factory_startup=True)
+        yield
         file, _, function_name = name.partition("::")
         folder = Path(__file__).parent / self.job["folder"]
         function = getattr(load(folder / f"{file}.py"), function_name)
-        return function(self.stage)
+        yield from function(self.stage)
 
     def advance(self) -> None:
         """Run the scenario to its next yield."""
