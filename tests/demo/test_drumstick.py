@@ -37,6 +37,7 @@ def test_the_bone_is_near_the_skin_where_the_meat_tapers_and_deep_where_it_is_th
     assert deep > 18.0
 
 
+@pytest.mark.at_length
 def test_the_bone_takes_up_its_volume_of_the_stored_tetrahedra(shape: QuadMesh) -> None:
     with np.load(SCENES / "drumstick-tets.npz", allow_pickle=False) as file:
         mesh, fixed = TetMesh.checked(file["X"], file["T"]), file["fixed"]

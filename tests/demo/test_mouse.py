@@ -69,6 +69,7 @@ def test_stored_tetrahedra_have_the_papers_size(stored: tuple[TetMesh, np.ndarra
     assert mesh.component_count == 1
 
 
+@pytest.mark.at_length
 def test_stored_tetrahedra_fill_the_mouse(
     surface: Surface, stored: tuple[TetMesh, np.ndarray]
 ) -> None:

@@ -285,6 +285,7 @@ def test_pins_and_ratio_changed_later_are_said_and_taken_over_without_tetrahedra
     assert body.mesh.nodes[body.fixed, 2].max() > -0.025 + 0.2 * 0.05
 
 
+@pytest.mark.at_length
 def test_another_edge_length_is_said_until_there_are_other_tetrahedra(saved):
     saved.palpate.edge_length = 0.25
     assert status(saved).meshing == ("Edge Length",)

@@ -158,6 +158,7 @@ def stranger(palpate, tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.at_length
 @pytest.mark.timeout(600)
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(planted=st.lists(plants(), min_size=1, max_size=4))

@@ -56,6 +56,7 @@ def test_a_stiff_region_is_baked_in_and_embedded(palpate):
     assert np.array_equal(body_of(thing).young_scale, body.young_scale)
 
 
+@pytest.mark.at_length
 def test_a_changed_stiff_region_is_said_and_taken_over(palpate):
     thing = boned_cube()
     assert bpy.ops.palpate.make_soft() == {"FINISHED"}
@@ -104,6 +105,7 @@ def test_a_compressed_body_is_pressed_and_restored(compressed):
     assert compressed.palpate.body_key == key
 
 
+@pytest.mark.at_length
 def test_another_form_is_said_and_taken_over(compressed):
     key = compressed.palpate.body_key
     compressed.palpate.form = "DENSE"

@@ -232,6 +232,7 @@ def test_looking_at_other_frames_moves_nothing(palpate):
     assert list(bpy.data.scenes) == scenes
 
 
+@pytest.mark.at_length
 def test_another_number_of_vertices_than_was_baked_is_refused_when_pressed(palpate):
     thing, scene = default_cube(), bpy.context.scene
     solid = thing.modifiers.new("Bevel", "BEVEL")
@@ -248,7 +249,7 @@ def test_another_number_of_vertices_than_was_baked_is_refused_when_pressed(palpa
     assert bpy.ops.palpate.stroke(place=(0, 0, 1), **STROKE) == {"FINISHED"}
 
 
-@pytest.mark.parametrize("keep", ["CACHE", "KEYS"])
+@pytest.mark.parametrize("keep", ["CACHE", pytest.param("KEYS", marks=pytest.mark.at_length)])
 def test_an_animation_is_played_on_the_carriers_vertices(palpate, keep, tmp_path):
     thing, scene = default_cube(), bpy.context.scene
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "cube.blend"))

@@ -149,7 +149,7 @@ def test_a_linked_duplicate_shares_the_carrier_and_has_layers_of_its_own(palpate
     assert (len(seen_places(thing)), len(seen_places(twin))) == (8, len(rest))
 
 
-@pytest.mark.parametrize("override", [False, True])
+@pytest.mark.parametrize("override", [False, pytest.param(True, marks=pytest.mark.at_length)])
 def test_an_object_of_another_file_is_refused_and_keeps_its_dents(palpate, tmp_path, override):
     thing = select(bpy.data.objects["Cube"])
     thing.palpate.edge_length = 0.2
@@ -172,6 +172,7 @@ def test_an_object_of_another_file_is_refused_and_keeps_its_dents(palpate, tmp_p
     assert "make it local" in str(part("operators.object.soft_object").refusal(linked))
 
 
+@pytest.mark.at_length
 def test_an_appended_object_brings_its_carrier_but_not_into_the_scene(palpate, tmp_path):
     thing = select(bpy.data.objects["Cube"])
     thing.palpate.edge_length = 0.2

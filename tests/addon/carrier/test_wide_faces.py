@@ -55,7 +55,9 @@ def test_what_a_mesh_can_show_of_its_finer_dents_goes_into_it(ball, act):
     np.testing.assert_allclose(seen_places(ball), own, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("act", ["convert_layers", "apply_layers"])
+@pytest.mark.parametrize(
+    "act", ["apply_layers", pytest.param("convert_layers", marks=pytest.mark.at_length)]
+)
 def test_what_a_mesh_cannot_show_is_not_lost_in_it(palpate, act):
     cube = select(bpy.data.objects["Cube"])
     cube.palpate.edge_length = COARSE

@@ -136,7 +136,7 @@ def test_each_finger_feels_the_limb_that_it_touches(sessions, states, bar):
     assert np.linalg.norm(bent - dent) < 0.1 * np.linalg.norm(dent)
 
 
-@pytest.mark.parametrize("bake", [False, True])
+@pytest.mark.parametrize("bake", [True, pytest.param(False, marks=pytest.mark.at_length)])
 def test_each_presser_meets_the_limb_that_it_is_at(bar, bake):
     scene, dents = bpy.context.scene, []
     scene.frame_start = scene.frame_end = 1

@@ -61,9 +61,11 @@ def test_enter_keeps_what_every_shape_drew(sessions, states, name, thing):
 @pytest.mark.parametrize(
     "trouble",
     [
-        "missing",
         "damaged",
-        *(pytest.param(one, marks=pytest.mark.at_length) for one in ("foreign", "no table")),
+        *(
+            pytest.param(one, marks=pytest.mark.at_length)
+            for one in ("missing", "foreign", "no table")
+        ),
     ],
 )
 def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, states, trouble, thing):
@@ -97,6 +99,7 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, state
     np.testing.assert_allclose(moved(thing, "Press 1"), first, rtol=0, atol=1e-7)
 
 
+@pytest.mark.at_length
 def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch, thing):
     thing.palpate.shape = "TABLE"
     file = table_file(thing, "newton-table")

@@ -49,6 +49,7 @@ def test_friction_carries_it(cube):
     np.testing.assert_allclose(carried, [0.0, 0.0, weight], atol=1e-6 * weight)
 
 
+@pytest.mark.at_length
 def test_it_falls_out_where_friction_is_too_small(cube):
     held = lifted(cube, 0.5).settle()
     push = min(np.sum(touch.pushes) for touch in held.tools)

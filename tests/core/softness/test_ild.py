@@ -36,6 +36,7 @@ def test_a_disc_as_wide_as_the_slab_presses_it_along_one_axis(law, share):
     assert whole.forces((share,))[0] == pytest.approx(-stress * np.pi * 0.01, rel=1e-6)
 
 
+@pytest.mark.at_length
 def test_pressed_a_little_it_is_a_linear_slab():
     """115 N at 25 mm with 10 kPa, by a program of its own (docs/softness.md)."""
     force = ild_of_young(1.0)

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from mouse_scene import own_copy, type_key
-from stage import Stage, Wait
+from stage import Stage, Wait, at_length
 
 NAME = "Mouse"
 
@@ -25,6 +25,7 @@ def escape_ends_the_baking_of_an_animation_and_changes_nothing(stage: Stage) -> 
     assert not _caches(stage)
 
 
+@at_length
 def a_baked_animation_plays_by_its_modifier(stage: Stage) -> Wait:
     yield from _begin(stage)
     yield from _bake(stage)
@@ -41,6 +42,7 @@ def a_baked_animation_plays_by_its_modifier(stage: Stage) -> Wait:
     assert not _thing().modifiers
 
 
+@at_length
 def pressers_are_followed_while_scrubbing(stage: Stage) -> Wait:
     yield from _begin(stage)
     hand = bpy.data.collections.new("Hand")

@@ -16,6 +16,7 @@ PINCH, FINGERTIP = "sample_scenes/pinch.blend", "sample_scenes/fingertip.blend"
 BACK = (-0.018, -0.014, 0.057)
 
 
+@at_length
 def a_fingertip_led_by_the_mouse_shows_its_patch_and_force(stage: Stage) -> Wait:
     yield from _open(stage, FINGERTIP, "Mouse")
     before = _coordinates("Mouse")
@@ -87,6 +88,7 @@ def two_handles_pinch_and_escape_restores_every_bit(stage: Stage) -> Wait:
     assert bpy.data.objects["Nodes"].modifiers.keys() == ["Pinched"]
 
 
+@at_length
 def two_empties_press_as_the_animation_leads_them(stage: Stage) -> Wait:
     yield from _open(stage, PINCH, "Nodes")
     yield from _press(stage)

@@ -6,13 +6,14 @@ import bpy
 import numpy as np
 from mouse_scene import depth, end_press, open_mouse, start_press, type_key
 from shown import all_panels_open
-from stage import Stage, Wait
+from stage import Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.core.record.read_recording import read_recording
 from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import CALM_SECONDS
 
 
+@at_length
 def space_lets_the_device_go_and_what_it_did_is_saved(stage: Stage) -> Wait:
     with all_panels_open():
         yield from open_mouse(stage)

@@ -141,6 +141,7 @@ def a_probe_led_outward_keeps_no_shape(stage: Stage) -> Wait:
     assert kept() == []
 
 
+@at_length
 def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     before = _coordinates()
@@ -159,6 +160,7 @@ def closing_the_window_in_which_is_pressed_ends_the_press(stage: Stage) -> Wait:
     assert _coordinates() == before
 
 
+@at_length
 def the_figures_fit_a_narrow_view(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     with stage.view():
@@ -216,6 +218,7 @@ def deleting_the_object_while_pressing_ends_the_press(stage: Stage) -> Wait:
     assert not servo.running
 
 
+@at_length
 def opening_another_file_while_pressing_ends_the_press(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     yield from start_press(stage)
@@ -306,6 +309,7 @@ def opening_another_file_during_make_soft_ends_it(stage: Stage) -> Wait:
     assert child.poll() is not None
 
 
+@at_length
 def switching_the_extension_off_while_pressing_leaves_a_clean_mesh(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     before = _coordinates()

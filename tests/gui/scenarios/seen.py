@@ -13,6 +13,7 @@ from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 
+@at_length
 def a_posed_body_is_pressed_where_it_is_seen(stage: Stage) -> Wait:
     yield from open_mouse(stage)
     turn = _pose_by_bone(np.radians(40.0))

@@ -90,6 +90,7 @@ def a_drag_beside_the_object_selects_and_moves_nothing(stage: Stage) -> Wait:
     assert not kept(cube)
 
 
+@at_length
 def a_push_goes_along_the_surface_with_ctrl(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)

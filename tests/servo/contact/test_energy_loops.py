@@ -82,6 +82,7 @@ def test_no_tool_gives_energy_down_to_two_radii(body, tool, max_force):
     gives_nothing(books_of(surface, alone, Settings(YOUNG_MODULUS), max_force, tips), TOOL_LOOPS)
 
 
+@pytest.mark.at_length
 def test_a_tool_and_a_point_beside_it_get_no_energy(body):
     surface = native_body(body, whole=True)
     pairs = list(random_pairs(loops_of(body, 4 * TOOL_LOOPS, DEEP), seed=14))[:TOOL_LOOPS]

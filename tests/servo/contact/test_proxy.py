@@ -53,6 +53,7 @@ def pushes(nodes, triangles, count, rng):
         yield quantum * np.round((goal - way[:, None] * normal) / quantum)
 
 
+@pytest.mark.at_length
 def test_pushes_into_the_mouse_never_fall_through_and_are_held_locally_nearest(mouse):
     nodes, triangles, body = mouse
     surface = Surface(nodes, triangles)

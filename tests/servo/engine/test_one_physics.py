@@ -40,7 +40,8 @@ def stored_body(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["cube", pytest.param("mouse", marks=pytest.mark.at_length), "hare"]
+    "name",
+    ["cube", *(pytest.param(name, marks=pytest.mark.at_length) for name in ("mouse", "hare"))],
 )
 def test_a_sphere_led_aside(name, tmp_path, capsys):
     body = stored_body(name)

@@ -35,6 +35,7 @@ def test_stored_columns_are_the_same(is_free, columns, mouse_mesh, tmp_path, rng
     np.testing.assert_allclose(stored.diagonal(), columns.diagonal(), rtol=1e-12, atol=1e-18)
 
 
+@pytest.mark.at_length
 def test_worker_processes_compress_what_one_process_does(columns, mouse_mesh, tmp_path):
     positions = mouse_mesh[0].nodes[columns.free_surface]
     here = compress(columns, positions, TOLERANCE)

@@ -67,6 +67,7 @@ def test_a_sphere_that_is_pushed_aside_sticks_and_slips_as_cattaneo_and_mindlin_
         assert (np.linalg.norm(aside, axis=1) <= friction * touch.pushes * (1 + 1e-9)).all()
 
 
+@pytest.mark.at_length
 def test_small_contacts_are_resisted_as_hertz_says(block, points):
     """At a node, on an edge and in a triangle; the elements alone are 1.3 to 2.7 times too firm."""
     field, shift = RegularField.of(block), lift(block, points, ELEMENT)
