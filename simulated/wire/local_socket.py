@@ -66,9 +66,17 @@ class LocalSocket(DevicePort):
 
     def read(self, _now: float, /) -> bytes:
         """Bytes from the host; none while unplugged."""
+        # Who has come first: one that comes as the last host goes finds that one gone.
+        coming = self._coming()
         heard = self._take()
-        # A new host may have spoken already.
-        return heard + self._take() if self._accept() else heard
+        for host in coming:
+            if self._host is None:
+                self._greet(host)
+                # It may have spoken already.
+                heard += self._take()
+            else:
+                host.close()
+        return heard
 
     def _take(self) -> bytes:
         """All that has come: a host that is gone is noticed behind the last that it said."""
@@ -87,23 +95,21 @@ class LocalSocket(DevicePort):
             heard += part
         return bytes(heard)
 
-    def _accept(self) -> bool:
-        """Let a host come if there is none, and hang up on all others; whether one has come."""
-        has_come = False
+    def _coming(self) -> list[socket.socket]:
+        """Connections that nobody has answered yet."""
+        found: list[socket.socket] = []
         while self._listening:
             try:
-                host, _ = self._listening.accept()
+                found.append(self._listening.accept()[0])
             except (BlockingIOError, ConnectionError):
                 break
-            if self._host is None:
-                self._forget()
-                host.setblocking(False)
-                host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                self._host = host
-                has_come = True
-            else:
-                host.close()
-        return has_come
+        return found
+
+    def _greet(self, host: socket.socket) -> None:
+        self._forget()
+        host.setblocking(False)
+        host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._host = host
 
     def _send(self, data: bytes) -> int:
         if self._host is None:

@@ -126,3 +126,28 @@ def test_without_pseudo_terminals_there_are_sockets_and_no_links(monkeypatch):
     made.unplug()
     with pytest.raises(PalpateError, match=r"no links to ports; name a socket"):
         ports.device_port("somewhere/port")
+
+
+def test_a_host_that_comes_in_the_moment_in_which_the_last_one_goes_is_not_hung_up_on(port):
+    first = socket.create_connection(address_of(port.path))
+    first.sendall(b"1")
+    assert heard(port, 1) == b"1"
+    listening, came = port._listening, []
+
+    class LateListening:
+        """Hears of the second host only after it was asked for."""
+
+        def accept(self):
+            if not came:
+                first.close()
+                came.append(socket.create_connection(address_of(port.path)))
+                came[0].sendall(b"2")
+            return listening.accept()
+
+    port._listening = LateListening()
+    try:
+        assert heard(port, 1) == b"2"
+    finally:
+        port._listening = listening
+        for second in came:
+            second.close()
