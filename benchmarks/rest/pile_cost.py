@@ -5,7 +5,7 @@
 Cubes of 50 mm with about 1,700 nodes stand on each other, with friction and without; times are the
 processor's, of the tick alone. Two cubes are then pressed by a fingertip of 8 mm. The exit status
 tells whether 8 bodies take less than a frame of 16 ms, and the press with a finger what docs say:
-1 ms at the median and 1.6 at the worst, where a loop of 1 kHz would want 0.3 and 0.7.
+0.3 ms at the median and 0.7 at the worst, as a loop of 1 kHz wants it; with friction 0.6 and 1.2.
 """
 
 from __future__ import annotations
@@ -29,7 +29,8 @@ DT = 1e-3
 ABOVE, LANDING = 2e-4, 60
 TIP = sphere(0.008)
 FRAME, FRAMED = 16.0, 8
-MEDIAN, WORST = 1.0, 1.6
+# By friction, ms: the median and the worst.
+CLAIMED = {0.0: (0.3, 0.7), 0.5: (0.6, 1.2)}
 
 
 def stack(body: SoftBody, count: int, friction: float, *, pressed: bool) -> Pile:
@@ -80,14 +81,14 @@ def main() -> int:
             median = float(np.median(took))
             failed = failed or (count <= FRAMED and median > FRAME)
             print(f"{count:6}{friction:10.1f}{touches:9}{median:8.2f}{took.max():8.2f}", flush=True)
-    for friction in (0.0, 0.5):
+    for friction, (most, most_of_one) in CLAIMED.items():
         pile = stack(body, 2, friction, pressed=True)
         costs(pile, [], LANDING)
         depths = 0.004 * np.sin(np.pi * np.linspace(0.0, 1.0, 10 * options.ticks))
         goals = [tip_above(body, 2, depth) for depth in depths]
         took, _ = costs(pile, goals, len(goals))
         median, worst = float(np.median(took)), float(took.max())
-        failed = failed or median > MEDIAN or worst > WORST
+        failed = failed or median > most or worst > most_of_one
         print(f"two and a finger, friction {friction}: median {median:.3f}, worst {worst:.3f}")
     print("as claimed" if not failed else "NOT AS CLAIMED")
     return int(failed)

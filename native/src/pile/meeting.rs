@@ -9,11 +9,14 @@ use super::member::Member;
 use super::obstacle::Obstacle;
 use super::outline::met;
 use super::shares::shares;
+use crate::algebra::MOST_POINTS;
 
 /// Points within so many distances between them are looked at.
 const MARGIN: f64 = 0.5;
 /// And forgotten beyond so many of these.
 const FORGOTTEN: f64 = 1.5;
+/// Contacts beyond this share of it are only watched.
+const WATCHED: f64 = 0.15;
 /// A place so many distances between points beyond an edge meets nothing.
 const BESIDE: f64 = 0.25;
 
@@ -144,6 +147,23 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], obstacles: &[Obsta
             }
         }
     }
+}
+
+/// Contacts that may press in this tick: those that do, and the nearest others.
+pub(super) fn chosen(contacts: &[Contact], members: &[Member]) -> Vec<usize> {
+    let is_near = |contact: &Contact| {
+        let watched = WATCHED * members[contact.body].surface.spacing();
+        contact.gap.is_finite() && (contact.push > 0.0 || contact.gap <= watched)
+    };
+    let near = contacts.iter().enumerate().filter(|near| is_near(near.1));
+    let mut chosen: Vec<usize> = near.map(|(number, _)| number).collect();
+    if chosen.len() > MOST_POINTS {
+        let rank = |&number: &usize| contacts[number].rank();
+        chosen.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
+        chosen.truncate(MOST_POINTS);
+        chosen.sort_unstable();
+    }
+    chosen
 }
 
 /// Shares the force of a contact out anew, where its point is on the other body now.

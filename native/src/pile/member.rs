@@ -1,10 +1,10 @@
 //! A body of the pile: where it is, what presses it, how it gives way.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
+use super::between::Between;
 use crate::body::surface::Body;
 use crate::contact::cones::mean;
 use crate::contact::ground::{Ground, MOST_TOOLS};
@@ -16,6 +16,8 @@ use crate::tool::patch::Patch;
 use crate::tool::points::ToolSurface;
 use crate::tool::slot::Slot;
 
+/// No slot: the point is not looked at.
+const NONE: u32 = u32::MAX;
 /// All slots of a patch are of this one number of a tool and body: what presses them is told by contacts.
 const ALL: [u8; 2] = [0, 0];
 
@@ -34,9 +36,9 @@ pub struct Member {
     pub(super) around: (DVec3, f64),
     outline: [DVec3; 2],
     patch: Patch,
-    slot_of: HashMap<u32, usize>,
-    /// How each slot gives way to a force on each, row by row, m/N.
-    between: Vec<DMat3>,
+    /// The slot of each contact point, or none.
+    slot_of: Vec<u32>,
+    between: Between,
 }
 
 impl Member {
@@ -53,6 +55,7 @@ impl Member {
         let middle = (low + high) * 0.5;
         let reach = (nodes.iter()).fold(0.0_f64, |most, at| most.max(at.distance(middle)));
         Self {
+            slot_of: vec![NONE; surface.points().len()],
             surface,
             young_modulus,
             free,
@@ -60,8 +63,7 @@ impl Member {
             around: (middle, reach),
             outline: [low, high],
             patch: Patch::new(),
-            slot_of: HashMap::new(),
-            between: Vec::new(),
+            between: Between::default(),
         }
     }
 
@@ -87,14 +89,14 @@ impl Member {
     /// How far a contact point is moved in the body's frame, m; one that is not looked at, not at all.
     #[inline]
     pub(super) fn moved(&self, point: u32) -> DVec3 {
-        let slot = self.slot_of.get(&point);
-        slot.map_or(DVec3::ZERO, |&slot| self.slots()[slot].moved)
+        let slot = self.slots().get(self.slot_of[point as usize] as usize);
+        slot.map_or(DVec3::ZERO, |slot| slot.moved)
     }
 
     /// The slot of a point that is looked at.
     #[inline]
     pub(super) fn slot(&self, point: u32) -> usize {
-        self.slot_of[&point]
+        self.slot_of[point as usize] as usize
     }
 
     /// Where a contact point is in the world, m.
@@ -104,50 +106,43 @@ impl Member {
         self.placement.to_world(at + self.moved(point))
     }
 
-    /// Looks at these points, and no others.
+    /// Looks at these points, in their order, and no others.
     pub(super) fn look_at(&mut self, points: &[u32]) {
-        let had = self.patch.slots().len();
-        self.patch.let_go(|slot| !points.contains(&slot.point));
-        let mut is_new = self.patch.slots().len() != had;
-        let body = Arc::clone(self.surface.body());
+        for slot in (0..self.slots().len()).rev() {
+            let point = self.slots()[slot].point;
+            if points.binary_search(&point).is_err() {
+                self.between.leave(slot, self.slots().len() - 1);
+                self.patch.leave(slot);
+                self.slot_of[point as usize] = NONE;
+                if let Some(moved) = self.patch.slots().get(slot) {
+                    self.slot_of[moved.point as usize] = slot as u32;
+                }
+            }
+        }
         let ground = Ground {
-            body: &body,
+            body: &Arc::clone(self.surface.body()),
             number: 0,
             young_modulus: self.young_modulus,
             creep: Step::default(),
             mobility: None,
         };
         for &point in points {
-            if self.patch.slot(ALL, point).is_none() {
+            if self.slot_of[point as usize] == NONE {
+                let new = self.slots().len();
                 self.patch
                     .enter(&ground, &self.surface, ALL, point, &[true; MOST_TOOLS]);
-                is_new = true;
-            }
-        }
-        if is_new {
-            let slots = self.patch.slots().iter().enumerate();
-            self.slot_of = slots.map(|(slot, at)| (at.point, slot)).collect();
-            self.find_between();
-        }
-    }
-
-    fn find_between(&mut self) {
-        let count = self.patch.slots().len();
-        self.between.resize(count * count, DMat3::ZERO);
-        for i in 0..count {
-            for j in 0..=i {
-                let block = self.patch.compliance(i, j) * (1.0 / self.young_modulus);
-                self.between[i * count + j] = block;
-                self.between[j * count + i] = block.transpose();
+                self.slot_of[point as usize] = new as u32;
+                let (patch, compliance) = (&self.patch, 1.0 / self.young_modulus);
+                let moves = |slot| patch.compliance(slot, new) * compliance;
+                self.between.enter(new, moves);
             }
         }
     }
 
-    /// How a slot gives way to forces on all, m/N.
+    /// How the slots give way to forces on each other.
     #[inline]
-    pub(super) fn between(&self, slot: usize) -> &[DMat3] {
-        let count = self.slots().len();
-        &self.between[slot * count..][..count]
+    pub(super) fn between(&self) -> &Between {
+        &self.between
     }
 
     /// Displaces the slots by these forces on them, N in the body's frame.

@@ -4,6 +4,7 @@
 //! equal and opposite to the last bit; both give way under it, each by its own compliance and by its
 //! own motion as a whole, and all contacts of all bodies are found together, without a clock.
 
+mod between;
 pub mod contact;
 mod meeting;
 pub mod member;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DMat3, DVec3};
 
 use super::contact::{Against, Contact};
-use super::meeting::{look, meet, share_out};
+use super::meeting::{chosen, look, meet, share_out};
 use super::member::Member;
 use super::obstacle::Obstacle;
 use super::rubbing::rub;
@@ -15,8 +15,6 @@ use crate::contact::mobility::{Mobility, Motion};
 use crate::rest::resting::Restless;
 use crate::tool::complementarity::Complementarity;
 
-/// Contacts beyond this share of the distance between points are only watched.
-const WATCHED: f64 = 0.15;
 /// A force aside within this share of its limit slips.
 const SLIPPING: f64 = 1.0 - 1e-7;
 
@@ -33,6 +31,10 @@ pub struct Pile {
     pub friction: f64,
     contacts: Vec<Contact>,
     problem: Complementarity,
+    system: System,
+    /// Of the last solve, by unknown: forces, and how far contacts that rub are away by pushes alone.
+    forces: Vec<f64>,
+    slips: Vec<f64>,
     time: f64,
 }
 
@@ -51,6 +53,9 @@ impl Pile {
             friction,
             contacts: Vec::new(),
             problem: Complementarity::default(),
+            system: System::default(),
+            forces: Vec::new(),
+            slips: Vec::new(),
             time: 0.0,
         }
     }
@@ -107,7 +112,13 @@ impl Pile {
     /// Contacts come and go, and those between bodies share their forces out where they are now.
     fn find_contacts(&mut self) {
         meet(&mut self.contacts, &self.members, &self.obstacles);
-        self.look();
+        // Between bodies, which have not moved since, the last tick has looked.
+        let (members, obstacles) = (&self.members, &self.obstacles);
+        let is_new = |contact: &&mut Contact| {
+            contact.gap.is_infinite() || matches!(contact.against, Against::Obstacle(_))
+        };
+        (self.contacts.iter_mut().filter(is_new))
+            .for_each(|contact| look(contact, members, obstacles));
         self.contacts.retain(|contact| contact.gap.is_finite());
         for contact in &mut self.contacts {
             share_out(contact, &self.members);
@@ -189,7 +200,7 @@ impl Pile {
 
     /// Finds the forces of all contacts in this tick.
     fn solve(&mut self, mobilities: &[Option<Mobility>]) {
-        let chosen = self.chosen();
+        let chosen = chosen(&self.contacts, &self.members);
         let away: Vec<DVec3> = (chosen.iter())
             .map(|&number| {
                 let contact = &self.contacts[number];
@@ -200,48 +211,37 @@ impl Pile {
                 DVec3::new(contact.gap, first.dot(slip), second.dot(slip))
             })
             .collect();
-        let system = System::new(&self.contacts, &chosen, &self.members, mobilities, &away);
-        let friction: Vec<f64> = (chosen.iter())
+        let limits: Vec<f64> = (chosen.iter())
             .map(|&number| self.coefficient(&self.contacts[number]))
             .collect();
-        let mut forces: Vec<f64> = (chosen.iter().zip(&system.directions))
-            .flat_map(|(&number, directions)| {
-                let contact = &self.contacts[number];
-                let aside = directions.transpose() * contact.aside;
-                [contact.push, aside.y, aside.z]
-            })
-            .collect();
-        rub(&system, &mut self.problem, &mut forces, &friction);
+        let (system, forces) = (&mut self.system, &mut self.forces);
+        let rubs = (&away[..], |place: usize| limits[place] > 0.0);
+        system.set_up(&self.contacts, &chosen, &self.members, mobilities, rubs);
+        let friction: Vec<f64> = system.rubs.iter().map(|&place| limits[place]).collect();
+        forces.clear();
+        forces.extend(chosen.iter().map(|&number| self.contacts[number].push));
+        forces.extend(system.rubs.iter().flat_map(|&place| {
+            let aside = system.directions[place].transpose() * self.contacts[chosen[place]].aside;
+            [aside.y, aside.z]
+        }));
+        rub(
+            system,
+            &mut self.problem,
+            forces,
+            &friction,
+            &mut self.slips,
+        );
         for contact in &mut self.contacts {
             (contact.push, contact.aside) = (0.0, DVec3::ZERO);
         }
-        for (place, &number) in chosen.iter().enumerate() {
-            let [push, x, y] = [0, 1, 2].map(|axis| forces[3 * place + axis]);
-            let contact = &mut self.contacts[number];
-            contact.push = push;
-            contact.aside = system.directions[place] * DVec3::new(0.0, x, y);
+        let (pushes, asides) = forces.split_at(chosen.len());
+        for (&number, &push) in chosen.iter().zip(pushes) {
+            self.contacts[number].push = push;
         }
-    }
-
-    /// Contacts that may press in this tick: those that do, and the nearest others.
-    fn chosen(&self) -> Vec<usize> {
-        let is_near = |contact: &Contact| {
-            let watched = WATCHED * self.members[contact.body].surface.spacing();
-            contact.gap.is_finite() && (contact.push > 0.0 || contact.gap <= watched)
-        };
-        let near = self
-            .contacts
-            .iter()
-            .enumerate()
-            .filter(|near| is_near(near.1));
-        let mut chosen: Vec<usize> = near.map(|(number, _)| number).collect();
-        if chosen.len() > MOST_POINTS {
-            let rank = |&number: &usize| self.contacts[number].rank();
-            chosen.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
-            chosen.truncate(MOST_POINTS);
-            chosen.sort_unstable();
+        for (&place, aside) in system.rubs.iter().zip(asides.chunks_exact(2)) {
+            let aside = DVec3::new(0.0, aside[0], aside[1]);
+            self.contacts[chosen[place]].aside = system.directions[place] * aside;
         }
-        chosen
     }
 
     /// Bodies move as a whole by what presses them.

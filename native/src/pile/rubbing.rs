@@ -6,7 +6,8 @@
 use glam::DVec2;
 
 use super::system::System;
-use crate::algebra::cholesky::dot;
+use crate::algebra::cholesky::dot_within;
+use crate::algebra::wide::{plus_product, widely};
 use crate::tool::complementarity::Complementarity;
 use crate::tool::friction::nearer;
 
@@ -18,35 +19,35 @@ const FOUND: f64 = 1e-6;
 /// Work of one solve for the pushes: all that it takes.
 const MOST_WORK: usize = usize::MAX / 4;
 
-/// Forces along the directions of a system, beginning with these; `friction` is each contact's
-/// coefficient, zero where nothing sticks yet.
+/// Forces along the unknowns of a system, beginning with these; `friction` are the coefficients of the
+/// contacts that rub. `slips` is memory.
 pub(super) fn rub(
     system: &System,
     problem: &mut Complementarity,
     forces: &mut [f64],
     friction: &[f64],
+    slips: &mut Vec<f64>,
 ) {
-    let count = friction.len();
+    let count = system.directions.len();
     problem.begin(count);
     for i in 0..count {
-        let row = system.row(3 * i);
-        for j in 0..=i {
-            problem.set(i, j, row[3 * j]);
+        for (j, &entry) in system.row(i)[..=i].iter().enumerate() {
+            problem.set(i, j, entry);
         }
-        problem.forces[i] = forces[3 * i];
     }
-    let rubs = friction.iter().any(|&coefficient| coefficient > 0.0);
+    problem.forces[..count].copy_from_slice(&forces[..count]);
     for _ in 0..MOST_TURNS {
         let by_push = push(system, problem, forces, count);
-        if !rubs {
+        if system.rubs.is_empty() {
             return;
         }
-        let largest = forces
-            .iter()
-            .fold(0.0_f64, |most, force| most.max(force.abs()));
+        let largest = (forces.iter()).fold(0.0_f64, |most, force| most.max(force.abs()));
+        slips.resize(forces.len() - count, 0.0);
+        begin_slips(system, &forces[..count], slips);
+        let (pushes, asides) = forces.split_at_mut(count);
         let mut by_sweeps = 0.0_f64;
         for _ in 0..MOST_SWEEPS {
-            let change = sweep(system, forces, friction);
+            let change = sweep(system, pushes, asides, friction, slips);
             by_sweeps = by_sweeps.max(change);
             if change <= FOUND * largest {
                 break;
@@ -60,42 +61,69 @@ pub(super) fn rub(
 
 /// Finds the pushes under the forces aside; by how much one changed at most, N.
 fn push(system: &System, problem: &mut Complementarity, forces: &mut [f64], count: usize) -> f64 {
-    for i in 0..count {
-        forces[3 * i] = 0.0;
+    problem.gaps[..count].copy_from_slice(&system.at_rest[..count]);
+    for (aside, &force) in forces.iter().enumerate().skip(count) {
+        if force != 0.0 {
+            add(force, &system.row(aside)[..count], &mut problem.gaps);
+        }
     }
-    for i in 0..count {
-        problem.gaps[i] = system.at_rest[3 * i] + dot(system.row(3 * i), forces);
-    }
-    let before: Vec<f64> = problem.forces[..count].to_vec();
     problem.solve(MOST_WORK);
     let mut most = 0.0_f64;
-    for (i, before) in before.iter().enumerate() {
-        forces[3 * i] = problem.forces[i];
-        most = most.max((problem.forces[i] - before).abs());
+    for (force, &found) in forces.iter_mut().zip(&problem.forces[..count]) {
+        most = most.max((found - *force).abs());
+        *force = found;
     }
     most
 }
 
-/// Each force aside in turn brings its point back to where it stuck, or as near as it may; by how much
-/// one changed at most, N.
-fn sweep(system: &System, forces: &mut [f64], friction: &[f64]) -> f64 {
-    let mut most = 0.0_f64;
-    for (k, coefficient) in friction.iter().enumerate() {
-        let [x, y] = [3 * k + 1, 3 * k + 2];
-        let limit = coefficient * forces[3 * k];
-        let last = DVec2::new(forces[x], forces[y]);
-        let force = if limit > 0.0 {
-            let [along_x, along_y] = [system.row(x), system.row(y)];
-            let slip = DVec2::new(
-                system.at_rest[x] + dot(along_x, forces),
-                system.at_rest[y] + dot(along_y, forces),
-            );
-            nearer(last, slip, [along_x[x], along_x[y], along_y[y]], limit)
-        } else {
-            DVec2::ZERO
-        };
-        (forces[x], forces[y]) = (force.x, force.y);
-        most = most.max((force - last).abs().max_element());
+widely! {
+    /// Adds so many times some numbers to others.
+    fn add(times: f64, from: &[f64], to: &mut [f64]) {
+        for (to, from) in to.iter_mut().zip(from) {
+            *to = plus_product::<FUSED>(*to, times, *from);
+        }
     }
-    most
+}
+
+widely! {
+    /// How far contacts are from where they stuck, by the pushes alone.
+    fn begin_slips(system: &System, pushes: &[f64], slips: &mut [f64]) {
+        for (k, slip) in slips.iter_mut().enumerate() {
+            let number = pushes.len() + k;
+            let row = &system.row(number)[..pushes.len()];
+            *slip = system.at_rest[number] + dot_within::<FUSED>(row, pushes);
+        }
+    }
+}
+
+widely! {
+    /// Each force aside in turn brings its point back to where it stuck, or as near as it may; by how much
+    /// one changed at most, N.
+    fn sweep(
+        system: &System,
+        pushes: &[f64],
+        asides: &mut [f64],
+        friction: &[f64],
+        slips: &[f64],
+    ) -> f64 {
+        let (mut most, count) = (0.0_f64, pushes.len());
+        for (k, (coefficient, &contact)) in friction.iter().zip(&system.rubs).enumerate() {
+            let [x, y] = [2 * k, 2 * k + 1];
+            let limit = coefficient * pushes[contact];
+            let last = DVec2::new(asides[x], asides[y]);
+            let force = if limit > 0.0 {
+                let along = [x, y].map(|k: usize| &system.row(count + k)[count..]);
+                let slip = DVec2::new(
+                    slips[x] + dot_within::<FUSED>(along[0], asides),
+                    slips[y] + dot_within::<FUSED>(along[1], asides),
+                );
+                nearer(last, slip, [along[0][x], along[0][y], along[1][y]], limit)
+            } else {
+                DVec2::ZERO
+            };
+            (asides[x], asides[y]) = (force.x, force.y);
+            most = most.max((force - last).abs().max_element());
+        }
+        most
+    }
 }
