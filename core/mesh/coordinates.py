@@ -1,4 +1,4 @@
-"""Range and precision of usable coordinates, and the box of size one for what depends on size."""
+"""Usable coordinates, the box of size one for what depends on size, and an order in space."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ LARGEST_STEP = 1e-3
 # Steps of coordinates in a box of size one. A change of unit moves their last bits, which a mesher
 # may answer with other tetrahedra; it is given the same numbers in every unit.
 STEPS_OF_ONE = 2.0**32
+
+# Cells of the space-filling curve along each axis of the bounding box: 2 to this power.
+Z_CURVE_BITS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,3 +107,18 @@ def refuse_rounded(what: str, points: NDArray[Any]) -> None:
             times=float(farthest) / size,
             share=100 * step / size,
         )
+
+
+def along_z_curve(positions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Places (n, 3) ordered by interleaving the bits of their coordinates (Morton's order), (n,).
+
+    Those near each other in space are mostly near each other in this order.
+    """
+    extent = np.ptp(positions, axis=0).max()
+    steps = (1 << Z_CURVE_BITS) - 1
+    cells = ((positions - positions.min(axis=0)) * (steps / (extent or 1.0))).astype(np.int64)
+    code = np.zeros(len(positions), dtype=np.int64)
+    for bit in range(Z_CURVE_BITS):
+        for axis in range(3):
+            code |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return np.argsort(code, kind="stable")

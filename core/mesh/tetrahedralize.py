@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import PalpateError
 from ..machine.absent_library import library
-from .coordinates import UnitBox
+from .coordinates import UnitBox, along_z_curve
 from .fit import THICKNESS_DOUBTFUL, refuse_thin
 from .surface import Surface
 from .tet_mesh import OUTWARD_FACES, TetMesh, pieces, signed_volumes
@@ -24,7 +24,9 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
     """Fill a surface with tetrahedra.
 
     fTetWild gets the surface centred and with a diagonal of 1: it compares with lengths that do
-    not depend on the size, so that the unit and the origin would change its result.
+    not depend on the size, so that the unit and the origin would change its result. Its triangles
+    are put into an order in space: it searches them by a tree of boxes that halves the list as it
+    is given, and took up to five times as long where neighbours were far apart in it.
 
     Parameters
     ----------
@@ -41,9 +43,11 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
     ftetwild = library("pytetwild.pytetwild", "fTetWild").tetrahedralize
     refuse_thin(surface, epsilon)
     box = UnitBox.of(surface.vertices)
+    vertices = box.enter(surface.vertices)
+    order = along_z_curve(vertices[surface.triangles].mean(axis=1))
     nodes, tets = ftetwild(
-        box.enter(surface.vertices),
-        surface.triangles.astype(np.int32),
+        vertices,
+        surface.triangles[order].astype(np.int32),
         edge_length_fac=edge_length,
         epsilon=epsilon,
         quiet=False,

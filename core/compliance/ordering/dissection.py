@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...mesh.coordinates import along_z_curve
 from ...progress import Progress, unwatched
 from .vertex_cover import minimum_vertex_cover
 
@@ -30,9 +31,6 @@ HEIGHTS_TRIED = (0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65)
 
 # Share of nodes that a separator must save to outweigh an off-centre cut.
 IMBALANCE_PENALTY = 0.3
-
-# Cells of the space-filling curve along each axis of the bounding box: 2 to this power.
-Z_CURVE_BITS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +77,7 @@ def dissect(
 
     # Numbered along a space-filling curve, nodes of a separator stand next to their neighbours, and
     # a front's boundary maps to the fronts above it in few runs.
-    curve = _along_z_curve(positions)
+    curve = along_z_curve(positions)
     along = np.empty_like(curve)
     along[curve] = np.arange(len(curve))
     positions, last, edges = positions[curve], last[curve], along[edges]
@@ -111,18 +109,6 @@ def dissect(
     return Dissection(
         curve[np.concatenate(pivots)], np.concatenate([[0], np.cumsum(sizes)]), np.array(parents)
     )
-
-
-def _along_z_curve(positions: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Nodes ordered by interleaving the bits of their coordinates (Morton's order), (n,)."""
-    extent = np.ptp(positions, axis=0).max()
-    steps = (1 << Z_CURVE_BITS) - 1
-    cells = ((positions - positions.min(axis=0)) * (steps / (extent or 1.0))).astype(np.int64)
-    code = np.zeros(len(positions), dtype=np.int64)
-    for bit in range(Z_CURVE_BITS):
-        for axis in range(3):
-            code |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return np.argsort(code, kind="stable")
 
 
 def _part(

@@ -55,6 +55,19 @@ def test_the_mesher_gets_the_same_bytes_in_every_unit(given):
         np.testing.assert_array_equal(same, triangles)
 
 
+def test_the_mesher_gets_neighbours_together_in_whatever_order_they_come(given):
+    blade = fan_blade().welded()
+    rng = np.random.default_rng(15)
+    for _ in range(2):
+        shuffled = rng.permutation(blade.triangles)
+        tetrahedralize(Surface.checked(blade.vertices, shuffled), 0.05, 0.003)
+    vertices, triangles = given[0]
+    np.testing.assert_array_equal(given[1][1], triangles)
+    steps = np.linalg.norm(np.diff(vertices[triangles].mean(axis=1), axis=0), axis=1)
+    scattered = np.linalg.norm(np.diff(vertices[shuffled].mean(axis=1), axis=0), axis=1)
+    assert steps.mean() < 0.5 * scattered.mean()
+
+
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_the_mesher_gets_the_same_shape_at_every_origin(given, offset):
     blade = fan_blade()
