@@ -4,44 +4,34 @@ use glam::{DMat3, DVec3};
 
 use crate::algebra::wide::{plus_product, widely};
 
-/// Places at first, and behind the last one, so that rows do not all lie in the same sets of a cache.
+/// Places at first.
 const ROOM: usize = 128;
-const BEHIND: usize = 8;
 
-/// Compliance between all slots, kept while they come and go: nine rows a slot, of which each holds an
-/// entry for all slots.
+/// Three vectors one after the other, each with a place for a register's fourth number.
+pub(super) type Three = [f64; 12];
+
+/// Compliance between all slots, kept while they come and go: of each that is loaded a block for all
+/// that are moved, column after column.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Between {
     room: usize,
-    numbers: Vec<f64>,
+    blocks: Vec<Three>,
 }
 
 impl Between {
-    /// From one row to the next.
-    #[inline]
-    pub(super) fn row(&self) -> usize {
-        self.room + BEHIND
-    }
-
-    /// How all slots are moved along an axis by a force along an axis on one.
-    #[inline]
-    fn at(&self, loaded: usize, [along, moved]: [usize; 2]) -> usize {
-        (9 * loaded + 3 * along + moved) * self.row()
-    }
-
     /// How a slot moves by a force on another, m/N.
-    pub(super) fn block(&self, moved: usize, loaded: usize) -> DMat3 {
-        let entry = |c: usize, r: usize| self.numbers[self.at(loaded, [c, r]) + moved];
-        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| entry(c, r))))
+    fn block(&self, moved: usize, loaded: usize) -> DMat3 {
+        let block = &self.blocks[loaded * self.room + moved];
+        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| block[4 * c + r])))
     }
 
     /// Takes down how a slot moves by a force on another, and the other way round.
     fn put(&mut self, moved: usize, loaded: usize, block: &DMat3) {
+        let (there, back) = (loaded * self.room + moved, moved * self.room + loaded);
         for c in 0..3 {
             for r in 0..3 {
-                let (there, back) = (self.at(loaded, [c, r]), self.at(moved, [r, c]));
-                self.numbers[there + moved] = block.col(c)[r];
-                self.numbers[back + loaded] = block.col(c)[r];
+                self.blocks[there][4 * c + r] = block.col(c)[r];
+                self.blocks[back][4 * r + c] = block.col(c)[r];
             }
         }
     }
@@ -71,87 +61,58 @@ impl Between {
 
     fn grow(&mut self, slots: usize) {
         let room = (2 * self.room).max(ROOM);
-        let mut grown = Self {
-            room,
-            numbers: vec![0.0; 9 * room * (room + BEHIND)],
-        };
-        for row in 0..9 * slots {
-            let from = &self.numbers[row * self.row()..][..slots];
-            let to = row * grown.row();
-            grown.numbers[to..to + slots].copy_from_slice(from);
+        let mut blocks = vec![[0.0; 12]; room * room];
+        for slot in 0..slots {
+            let from = &self.blocks[slot * self.room..][..slots];
+            blocks[slot * room..][..slots].copy_from_slice(from);
         }
-        *self = grown;
+        (self.room, self.blocks) = (room, blocks);
     }
 
-    /// How the first `count` slots move by a unit force along each of some ways, shared out among some:
-    /// three rows a way, an axis each, as far apart as [`Self::row`] says.
+    /// How the first `count` slots move by a unit force along each of some ways, three at most, shared out
+    /// among some; `sum` is memory.
     pub(super) fn move_by(
         &self,
         shares: &[(usize, f64)],
         ways: &[DVec3],
         count: usize,
-        sum: &mut Vec<f64>,
-        moved: &mut Vec<f64>,
+        sum: &mut Vec<Three>,
+        moved: &mut Vec<Three>,
     ) {
-        let row = self.row();
-        sum.resize(9 * row, 0.0);
-        moved.resize(9 * row, 0.0);
-        let summed = match shares {
-            [(slot, share)] if *share == 1.0 => &self.numbers[9 * slot * row..],
-            _ => {
-                for (k, &(slot, share)) in shares.iter().enumerate() {
-                    add(
-                        &self.numbers[9 * slot * row..],
-                        share,
-                        k == 0,
-                        row,
-                        count,
-                        sum,
-                    );
-                }
-                &sum[..]
-            }
-        };
-        turn(summed, ways, row, count, moved);
-    }
-
-    /// How a slot moves by a way's force, of the rows that [`Self::move_by`] has made.
-    #[inline]
-    pub(super) fn moved(&self, rows: &[f64], way: usize, slot: usize) -> DVec3 {
-        let row = self.row();
-        let at = |axis: usize| rows[(3 * way + axis) * row + slot];
-        DVec3::new(at(0), at(1), at(2))
+        let of = |slot: usize| &self.blocks[slot * self.room..][..count];
+        moved.resize(count, [0.0; 12]);
+        if let [(slot, 1.0)] = shares {
+            turn(of(*slot), ways, moved);
+            return;
+        }
+        sum.clear();
+        sum.resize(count, [0.0; 12]);
+        for &(slot, share) in shares {
+            add(of(slot), share, sum);
+        }
+        turn(sum, ways, moved);
     }
 }
 
 widely! {
-    /// Adds a share of nine rows to others, which are begun with the first.
-    fn add(rows: &[f64], share: f64, is_first: bool, row: usize, count: usize, sum: &mut [f64]) {
-        for k in 0..9 {
-            let (from, to) = (&rows[k * row..][..count], &mut sum[k * row..][..count]);
-            if is_first {
-                for (to, from) in to.iter_mut().zip(from) {
-                    *to = share * from;
-                }
-            } else {
-                for (to, from) in to.iter_mut().zip(from) {
-                    *to = plus_product::<FUSED>(*to, share, *from);
-                }
+    /// Adds a share of blocks to others.
+    fn add(blocks: &[Three], share: f64, sum: &mut [Three]) {
+        for (sum, block) in sum.iter_mut().zip(blocks) {
+            for k in 0..12 {
+                sum[k] = plus_product::<FUSED>(sum[k], share, block[k]);
             }
         }
     }
 }
 
 widely! {
-    /// Three rows for each way: those of the axes, by the way's parts along these.
-    fn turn(rows: &[f64], ways: &[DVec3], row: usize, count: usize, moved: &mut [f64]) {
-        for (number, way) in ways.iter().enumerate() {
-            for axis in 0..3 {
-                let [x, y, z] = [0, 3, 6].map(|along: usize| &rows[(along + axis) * row..][..count]);
-                let to = &mut moved[(3 * number + axis) * row..][..count];
-                for s in 0..count {
-                    let by_two = plus_product::<FUSED>(way.x * x[s], way.y, y[s]);
-                    to[s] = plus_product::<FUSED>(by_two, way.z, z[s]);
+    /// What each block makes of each way.
+    fn turn(blocks: &[Three], ways: &[DVec3], moved: &mut [Three]) {
+        for (moved, block) in moved.iter_mut().zip(blocks) {
+            for (way, moved) in ways.iter().zip(moved.chunks_exact_mut(4)) {
+                for r in 0..4 {
+                    let by_two = plus_product::<FUSED>(way.x * block[r], way.y, block[4 + r]);
+                    moved[r] = plus_product::<FUSED>(by_two, way.z, block[8 + r]);
                 }
             }
         }
@@ -197,9 +158,9 @@ mod tests {
         let (mut sum, mut moved) = (Vec::new(), Vec::new());
         between.move_by(&shares, &ways, 7, &mut sum, &mut moved);
         for (number, &way) in ways.iter().enumerate() {
-            for slot in 0..7 {
+            for (slot, moved) in moved.iter().enumerate() {
                 let parts = shares.map(|(loaded, share)| block(slot, loaded) * way * share);
-                let told = between.moved(&moved, number, slot);
+                let told = DVec3::from_slice(&moved[4 * number..]);
                 assert!(told.distance(parts.into_iter().sum()) < 1e-12);
             }
         }

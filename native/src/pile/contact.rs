@@ -18,6 +18,8 @@ pub struct Contact {
     pub body: usize,
     /// Number of the contact point there.
     pub point: u32,
+    /// It carries its own force.
+    own: [(u32, f64); 1],
     /// What it meets.
     pub against: Against,
     /// Contact points of the other body that carry the force there, and their shares.
@@ -46,6 +48,7 @@ impl Contact {
         Self {
             body,
             point,
+            own: [(point, 1.0)],
             against,
             shares: Vec::new(),
             place: DVec3::ZERO,
@@ -89,13 +92,13 @@ impl Contact {
 
     /// Contact points of a body that carry its force there, and their shares.
     #[inline]
-    pub(super) fn shares_on(&self, body: usize) -> Vec<(u32, f64)> {
+    pub(super) fn shares_on(&self, body: usize) -> &[(u32, f64)] {
         if self.body == body {
-            vec![(self.point, 1.0)]
+            &self.own
         } else if self.against == Against::Body(body) {
-            self.shares.clone()
+            &self.shares
         } else {
-            Vec::new()
+            &[]
         }
     }
 }

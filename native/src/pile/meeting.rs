@@ -37,6 +37,14 @@ type Near = (usize, u32, Against);
 /// Has contacts come that are near, and go that are far.
 pub(super) fn meet(contacts: &mut Vec<Contact>, members: &[Member], obstacles: &[Obstacle]) {
     let mut found: Vec<Near> = Vec::new();
+    let stays = |contact: &Contact| {
+        let margin = FORGOTTEN * MARGIN * members[contact.body].surface.spacing();
+        contact.push > 0.0 || contact.gap <= margin
+    };
+    // Those that stay need not be found.
+    let staying: HashSet<Near> = (contacts.iter().filter(|contact| stays(contact)))
+        .map(|contact| (contact.body, contact.point, contact.against))
+        .collect();
     for body in 0..members.len() {
         for number in 0..obstacles.len() {
             near_obstacle(&mut found, members, body, obstacles, number);
@@ -44,15 +52,14 @@ pub(super) fn meet(contacts: &mut Vec<Contact>, members: &[Member], obstacles: &
         for other in body + 1..members.len() {
             let [body, other] = finer(members, body, other);
             if members[body].free.is_some() || members[other].free.is_some() {
-                near_body(&mut found, members, body, other);
+                near_body(&mut found, members, [body, other], &staying);
             }
         }
     }
     let mut missing: HashSet<Near> = found.iter().copied().collect();
     contacts.retain(|contact| {
-        let margin = FORGOTTEN * MARGIN * members[contact.body].surface.spacing();
         let is_found = missing.remove(&(contact.body, contact.point, contact.against));
-        is_found || contact.push > 0.0 || contact.gap <= margin
+        is_found || stays(contact)
     });
     // In the order in which they were found: what is reckoned does not depend on a table's.
     let new = found.into_iter().filter(|near| missing.contains(near));
@@ -80,7 +87,12 @@ fn near_obstacle(
     });
 }
 
-fn near_body(found: &mut Vec<Near>, members: &[Member], body: usize, other: usize) {
+fn near_body(
+    found: &mut Vec<Near>,
+    members: &[Member],
+    [body, other]: [usize; 2],
+    staying: &HashSet<Near>,
+) {
     let (member, against) = (&members[body], &members[other]);
     let margin = MARGIN * member.surface.spacing();
     let beside = BESIDE * member.surface.spacing();
@@ -96,7 +108,8 @@ fn near_body(found: &mut Vec<Near>, members: &[Member], body: usize, other: usiz
     member.surface.tree().visit(is_near, |point| {
         let at = &member.surface.points()[point as usize];
         let place = (against.placement).place_to_body(member.placement.to_world(at.position));
-        if !against.is_around(place, margin) {
+        let is_known = staying.contains(&(body, point, Against::Body(other)));
+        if is_known || !against.is_around(place, margin) {
             return;
         }
         let facing = member.placement.rotation * at.normal;

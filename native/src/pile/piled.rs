@@ -141,7 +141,7 @@ impl Pile {
         let mut fits = vec![false; self.contacts.len()];
         for number in ranked {
             let contact = &self.contacts[number];
-            let loads = |body: usize| contact.shares_on(body).into_iter().map(|(point, _)| point);
+            let loads = |body: usize| contact.shares_on(body).iter().map(|&(point, _)| point);
             fits[number] = points.iter().enumerate().all(|(body, points)| {
                 let new = loads(body).filter(|point| !points.contains(point)).count();
                 points.len() + new <= MOST_POINTS
@@ -173,7 +173,7 @@ impl Pile {
             let mut forces = vec![DVec3::ZERO; member.slots().len()];
             for contact in self.contacts.iter().filter(|contact| contact.push > 0.0) {
                 let force = turn * contact.force() * contact.sign_on(body);
-                for (point, share) in contact.shares_on(body) {
+                for &(point, share) in contact.shares_on(body) {
                     forces[member.slot(point)] += force * share;
                 }
             }

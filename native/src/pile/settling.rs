@@ -124,7 +124,7 @@ impl Pile {
             let presses = |contact: &&Contact| contact.push > 0.0;
             for contact in self.contacts().iter().filter(presses) {
                 let own = turn * contact.force() * contact.sign_on(body);
-                for (point, share) in contact.shares_on(body) {
+                for &(point, share) in contact.shares_on(body) {
                     let at = points[point as usize].position;
                     force += own * share;
                     torque += (at - free.centre).cross(own * share);

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
+use super::between::Three;
 use super::contact::Contact;
 use super::member::Member;
 use crate::algebra::wide::{plus_product, widely};
@@ -20,6 +21,8 @@ struct Side {
     slots: Range<usize>,
     /// Takes the contact's directions, out and two across, to those of the body, as its force acts there.
     ways: DMat3,
+    /// The same turned over, a part of each direction after the other.
+    along: Three,
     /// Where the force acts on the body as a whole, m.
     place: DVec3,
 }
@@ -40,8 +43,8 @@ pub(super) struct System {
     sides: Vec<Side>,
     /// Slots of a body that carry forces, and their shares.
     shares: Vec<(usize, f64)>,
-    sum: Vec<f64>,
-    moved: Vec<f64>,
+    sum: Vec<Three>,
+    moved: Vec<Three>,
     /// Unit forces along all unknowns as wrenches on a body, an entry of these after the other.
     wrenches: Vec<f64>,
 }
@@ -105,15 +108,22 @@ impl System {
                 continue;
             }
             let (first, mut place) = (self.shares.len(), DVec3::ZERO);
-            for (point, share) in contacts[number].shares_on(body) {
+            for &(point, share) in contacts[number].shares_on(body) {
                 place += points[point as usize].position * share;
                 self.shares.push((member.slot(point), share));
             }
+            let ways = turn * self.directions[contact] * sign;
+            let mut along = [0.0; 12];
+            for axis in 0..3 {
+                let parts = ways.row(axis).to_array();
+                along[4 * axis..][..3].copy_from_slice(&parts);
+            }
             self.sides.push(Side {
                 contact,
-                place,
                 slots: first..self.shares.len(),
-                ways: turn * self.directions[contact] * sign,
+                ways,
+                along,
+                place,
             });
         }
     }
@@ -141,20 +151,30 @@ impl System {
             let ways = own.map(|(_, way)| way);
             let shares = &self.shares[loaded.slots.clone()];
             between.move_by(shares, &ways[..owns], slots, &mut sum, &mut moved);
-            for other in 0..=number {
-                let seen = &self.sides[other];
-                let (theirs, others) = self.unknowns(seen);
-                for (way, &(column, _)) in own[..owns].iter().enumerate() {
-                    let shares = self.shares[seen.slots.clone()].iter();
-                    let by = shares.fold(DVec3::ZERO, |sum, &(slot, share)| {
-                        sum + between.moved(&moved, way, slot) * share
-                    });
-                    // Of a side with itself each pair comes once.
-                    let others = if other == number { way + 1 } else { others };
-                    for &(row, along) in &theirs[..others] {
-                        let at = row.max(column) * self.at_rest.len() + row.min(column);
-                        self.matrix[at] += along.dot(by);
+            let (contact, aside) = (loaded.contact, self.aside[loaded.contact]);
+            for (other, seen) in self.sides[..=number].iter().enumerate() {
+                let by = seen_by(&self.shares[seen.slots.clone()], &moved, &seen.along);
+                // Rows of the later unknown of each pair; pairs of a contact with itself once.
+                let (first, count) = (seen.contact, self.at_rest.len());
+                self.matrix[contact * count + first] += by[0];
+                if let Some(aside) = aside {
+                    self.matrix[aside * count + first] += by[4];
+                    self.matrix[(aside + 1) * count + first] += by[8];
+                }
+                let Some(column) = self.aside[first] else {
+                    continue;
+                };
+                if other < number {
+                    self.matrix[column * count + contact] += by[1];
+                    self.matrix[(column + 1) * count + contact] += by[2];
+                }
+                if let Some(aside) = aside {
+                    self.matrix[aside * count + column] += by[5];
+                    if other < number {
+                        self.matrix[aside * count + column + 1] += by[6];
                     }
+                    let row = &mut self.matrix[(aside + 1) * count + column..][..2];
+                    (row[0], row[1]) = (row[0] + by[9], row[1] + by[10]);
                 }
             }
         }
@@ -210,6 +230,29 @@ impl System {
     pub(super) fn row(&self, number: usize) -> &[f64] {
         let count = self.at_rest.len();
         &self.matrix[number * count..][..count]
+    }
+}
+
+widely! {
+    /// What moves some slots by three forces, as a contact that they carry by their shares sees it: of
+    /// each force the parts along its three directions.
+    fn seen_by(shares: &[(usize, f64)], moved: &[Three], along: &Three) -> Three {
+        let (mut sum, mut parts) = ([0.0; 12], [0.0; 12]);
+        for &(slot, share) in shares {
+            let moved = &moved[slot];
+            for k in 0..12 {
+                sum[k] = plus_product::<FUSED>(sum[k], share, moved[k]);
+            }
+        }
+        for way in 0..3 {
+            for l in 0..4 {
+                let of = |axis: usize| (sum[4 * way + axis], along[4 * axis + l]);
+                let [(x, by_x), (y, by_y), (z, by_z)] = [of(0), of(1), of(2)];
+                let by_two = plus_product::<FUSED>(x * by_x, y, by_y);
+                parts[4 * way + l] = plus_product::<FUSED>(by_two, z, by_z);
+            }
+        }
+        parts
     }
 }
 
