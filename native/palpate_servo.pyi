@@ -364,6 +364,10 @@ class Snapshot(FingerSnapshot):
         """Factor by which forces are other than those of a linear body at the same places."""
 
     @property
+    def held(self) -> float:
+        """Elastic energy of a linear body at the same places, at unit modulus, J/Pa."""
+
+    @property
     def placement(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position, m, and rotation of the body's frame after the tick; of one that is held those
         of the world.

@@ -6,6 +6,7 @@ from typing import Any
 import bpy
 
 from ...core.quantities import duration, memory, waiting
+from ...core.shape.rotation_strain.rotation_strain_shape import frame_plan
 from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
 from ...core.shape.shapes import shape_name
 from ...operators.reporting.translated import shown
@@ -61,12 +62,29 @@ def cost_now(thing: bpy.types.Object) -> ShapeCost | None:
     return shape_cost(shape_name(chosen_shape(thing)), size)
 
 
+def _limit_of(thing: bpy.types.Object) -> str:
+    """What of Real this object lacks; nothing for most."""
+    baked = thing.palpate
+    if baked.pin_mode == "NONE":
+        return "Without pins it is drawn and felt as a linear body"
+    if frame_plan(baked.node_count - baked.pinned_count).lattice_nodes:
+        return (
+            "So large a body is drawn so but for what is finer than a coarse lattice, and felt as "
+            "a linear one; a coarser bake is felt, too"
+        )
+    if baked.relaxation != "NONE":
+        return "While it gives way with time it is drawn so, and felt as a linear body"
+    return ""
+
+
 def _draw_cost(
     layout: bpy.types.UILayout, context: bpy.types.Context, thing: bpy.types.Object
 ) -> None:
     cost = cost_now(thing)
     if cost is None or thing.palpate.shape == "LINEAR":
         return
+    if shape_name(chosen_shape(thing)) == "real" and (limit := _limit_of(thing)):
+        say(layout, context, limit, "INFO")
     box = layout.box().column(align=True)
     rows = [("A Frame, About", f"{1000 * cost.frame_seconds:.2g} ms")]
     if cost.first_seconds >= 0.1:

@@ -209,6 +209,8 @@ class PalpateObject(MaterialProperties, ShapeProperties, RestProperties, bpy.typ
     baked_tolerance: result(0.1)
     column_error: result(0.0)
     node_count: result(0)
+    # 0 in files from before it was told.
+    pinned_count: result(0)
     tet_count: result(0)
     free_surface_count: result(0)
     compliance_megabytes: result(0.0)

@@ -32,6 +32,7 @@ from ..rest.rest_figures import rest_figures, touch_figures
 from ..scene.scene_commands import press_scene
 from ..scene.scene_file import is_scene
 from .press_tool import pressed_tools, tool_figures, tool_summary
+from .shape_option import add_shape, shape_of
 
 HELP = "press a body with one or several fingers and read the forces"
 TOO_DEEP = (
@@ -83,13 +84,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="coefficient of friction between --tool and body (default: 0)",
     )
     add_floor(parser)
-    parser.add_argument(
-        "--shape",
-        choices=(*SHAPES, *FORMER_NAMES),
-        default="linear",
-        help="how the deformed shape is computed under the forces: linear elasticity, the paper's "
-        "(16) (paper; formerly table and series), or the material's own law, which tells the "
-        "force, too (real; formerly rotation-strain) (default: linear)",
+    add_shape(
+        parser,
+        (*SHAPES, *FORMER_NAMES),
+        "how the deformed shape is computed under the forces: by the material's own law, which "
+        "tells the force, too (real; formerly rotation-strain), by linear elasticity (linear), or "
+        "by the paper's (16) (paper; formerly table and series)",
     )
     parser.add_argument(
         "--displacements",
@@ -126,7 +126,7 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
     firm = settings.mode == "consistent"
     touches, displacements = _deformed(arguments, body, linear, young_modulus, firm=firm)
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
-    common = _common_figures(arguments, displacements, young_modulus)
+    common = _common_figures(arguments, body, displacements, young_modulus)
     common |= {"mode": settings.mode}
     coupling = _coupling(body, arguments.at, young_modulus) if len(contacts) > 1 else None
     _print(arguments, contacts, common, coupling)
@@ -140,7 +140,7 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
     settings = ContactSettings(young_modulus, arguments.friction or 0.0)
     linear = pressed_tools(body, tool, arguments.at, arguments.by, settings)
     touches, displacements = _deformed(arguments, body, linear, young_modulus)
-    common = _common_figures(arguments, displacements, young_modulus)
+    common = _common_figures(arguments, body, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     _print(arguments, figures, common)
     return 0
@@ -190,7 +190,7 @@ def _deformed(
     """Touches as they are felt, from ``linear`` ones, and displacements (n, 3), written where that
     is asked for; ``firm`` where the shape tells the forces, too.
     """
-    chosen, loads = shape(body, arguments.shape, arguments.body), loads_of(linear)
+    chosen, loads = shape(body, shape_of(arguments, body), arguments.body), loads_of(linear)
     touches = linear
     try:
         displacements = settled(body, chosen, loads, young_modulus).displacements
@@ -215,12 +215,15 @@ def _deformed(
 
 
 def _common_figures(
-    arguments: argparse.Namespace, displacements: NDArray[np.float64], young_modulus: float
+    arguments: argparse.Namespace,
+    body: SoftBody,
+    displacements: NDArray[np.float64],
+    young_modulus: float,
 ) -> dict[str, object]:
     return {
         "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
         "young_modulus": young_modulus,
-        "shape": shape_name(arguments.shape),
+        "shape": shape_name(shape_of(arguments, body)),
     }
 
 

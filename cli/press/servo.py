@@ -7,32 +7,31 @@ import json
 import math
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.body import body_file
-from ...core.body.soft_body import SoftBody
-from ...core.contact.tool.pose import Pose
 from ...core.errors import PalpateError
 from ...core.machine.stop_signals import stopped_by_signals
 from ...core.record.recording import check_recording_path, check_room, write_recording
-from ...core.rest.prop import WORLD
+from ...core.servo.firming import Firming
 from ...core.servo.port_error import PortError
 from ...core.servo.ports import BAUD, check_baud, check_port
 from ...core.servo.session import STATES, LinkDevice, servo_on
 from ...core.servo.settings import Settings
-from ...simulated.hand.options import SimulatedOptions
+from ...core.shape.shapes import shape
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..rest.floor_options import add_floor
 from ..rest.laid_body import laid_body
+from .from_above import highest_place, press_from_above, vector
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
+from .shape_option import add_shape, shape_of
 from .timing_check import add_check_timing
 
 if TYPE_CHECKING:
@@ -41,8 +40,6 @@ if TYPE_CHECKING:
 HELLO_SECONDS = 5.0
 LOOK_EVERY_SECONDS = 0.02
 LONGEST_RECORDING_SECONDS = 3600.0
-HAND_FORCE = 1.5
-"""Largest force of the simulated hand, N: half of its device's."""
 
 HELP = "touch a body with a device, at 1 kHz"
 DESCRIPTION = (
@@ -80,6 +77,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default="consistent",
         help="contact inside triangles: its point moves by exactly the finger's displacement "
         "(consistent, the default), or as in the paper",
+    )
+    add_shape(
+        parser,
+        ("real", "linear"),
+        "by what the body presses back: the material's own law, found while it is pressed, or "
+        "linear elasticity",
     )
     parser.add_argument(
         "--seconds",
@@ -120,19 +123,28 @@ def run(arguments: argparse.Namespace) -> int:
         _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
         settings = Settings(young_modulus, mode=arguments.mode)
+        made = shape(body, shape_of(arguments, body))
+        stack.callback(made.close)
+        made.wait_for(np.zeros(0, dtype=np.int64))
         servo = servo_on(laid.native, settings, rate_hz=arguments.rate, prop=laid.prop)
+        firming = Firming(servo, body)
+        stack.callback(firming.close)
         stack.callback(servo.stop)
         _add_fingers(servo, others, arguments.baud)
         if arguments.record is not None:
             _start_recording(servo, arguments.record, arguments.seconds)
         if arguments.haply is not None:
-            _, at, _ = _highest_place(body)
-            connect_haply(servo, arguments, _vector(laid.placement.to_world(at)), stopped)
+            _, at, _ = highest_place(body)
+            connect_haply(servo, arguments, vector(laid.placement.to_world(at)), stopped)
         else:
             _connect(servo, port, arguments.baud, stopped)
         for finger, other in enumerate(others, start=1):
             _await_greeting(servo, finger, other, stopped)
-        report = _touch(servo, port, arguments.seconds, stopped)
+
+        def follow() -> None:
+            firming.follow(servo.snapshot(), made, young_modulus)
+
+        report = _touch(servo, port, arguments.seconds, stopped, follow)
         if simulated is not None:
             report["simulated_device"] = simulated.stop()
         report["young_modulus"] = young_modulus
@@ -164,57 +176,6 @@ def _write_recording(path: Path, servo: Servo) -> dict[str, object]:
     write_recording(path, samples, STATES, servo.counters()["rate_hz"])
     ticks = len(np.unique(samples["tick"]))
     return {"file": str(path), "ticks": ticks, "lost": servo.recording_lost}
-
-
-def press_from_above(
-    body: SoftBody, young_modulus: float, placement: Pose = WORLD
-) -> SimulatedOptions:
-    """Simulated hand that presses the body, placed there, at its highest place, against the normal.
-
-    It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
-    """
-    mesh = body.mesh
-    extents = np.ptp(mesh.nodes, axis=0)
-    highest, at, normal = _highest_place(body)
-    blocks = body.contact_blocks[mesh.surface_local_triangles[highest]]
-    stiffness = young_modulus * float(normal @ blocks.mean(axis=0) @ normal)
-    depth = min(0.1 * float(extents[2]), HAND_FORCE / stiffness)
-    hand = SimulatedOptions()
-    # The hand's target is deeper than the device's: its spring yields to the body's force.
-    reach = depth * (1.0 + stiffness / hand.hand_stiffness)
-    height = 0.2 * float(extents.max())
-    at, normal = placement.to_world(at), placement.rotation @ normal
-    return SimulatedOptions(
-        rest=_vector(at + height * normal),
-        at=_vector(at),
-        by=_vector(-reach * normal),
-        # At most half a metre per second for any size of body.
-        approach=max(0.5, 4.0 * height),
-        period=max(2.0, 8.0 * reach),
-    )
-
-
-def _highest_place(body: SoftBody) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
-    """Surface triangle to press from above: its index, its centre (m) and its normal."""
-    mesh = body.mesh
-    corners = mesh.nodes[mesh.surface_triangles]
-    centres = corners.mean(axis=1)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    pinned = np.isin(mesh.surface_triangles, body.fixed).any(axis=1)
-    extents = np.ptp(mesh.nodes, axis=0)
-    # Free upward places come before steep ones, those before pinned ones; of equally high places,
-    # such as a flat top, the middle.
-    fit = ~pinned & (normals[:, 2] > 0.7)
-    candidates = next(choice for choice in (fit, ~pinned, ~fit) if choice.any())
-    high = candidates & (centres[:, 2] >= centres[candidates, 2].max() - 0.01 * extents[2])
-    off_centre = np.linalg.norm((centres - centres[high].mean(axis=0))[:, :2], axis=1)
-    highest = int(np.where(high, off_centre, np.inf).argmin())
-    return highest, centres[highest], normals[highest]
-
-
-def _vector(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    return (float(values[0]), float(values[1]), float(values[2]))
 
 
 def _connect(servo: Servo, port: str, baud: int | None, stopped: Sequence[int]) -> None:
@@ -269,11 +230,13 @@ def _touch(
     port: str,
     seconds: float,
     stopped: Sequence[int],
+    follow: Callable[[], None],
 ) -> dict[str, Any]:
     felt = Felt()
     begin = time.monotonic()
     while not stopped and time.monotonic() < begin + seconds and servo.running:
         time.sleep(LOOK_EVERY_SECONDS)
+        follow()
         felt.take(servo.samples())
     last = servo.snapshot()
     servo.stop()

@@ -46,7 +46,7 @@ def refuse_beside_floor(arguments: argparse.Namespace) -> None:
     """
     if arguments.mode is not None:
         raise PalpateError("--mode: it is about points; leave it out with --tool")
-    if arguments.shape != "linear":
+    if arguments.shape not in (None, "linear"):
         raise PalpateError(
             "--shape: a body without pins has the linear one only; leave it out, or pin the body "
             "('palpate pin')"

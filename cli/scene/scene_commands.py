@@ -38,7 +38,7 @@ def settle_scene(arguments: argparse.Namespace) -> int:
 def press_scene(arguments: argparse.Namespace) -> int:
     """Read, let all come to rest, move the scene's tools and those that are set down, print."""
     _refuse_options(arguments)
-    if arguments.shape != "linear":
+    if arguments.shape not in (None, "linear"):
         raise PalpateError("--shape: bodies of a scene have the linear one; leave it out")
     scene = read_scene(arguments.body)
     rests, names = _pressed(arguments, scene)

@@ -2,30 +2,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
+from typing import Protocol
 
-import numpy as np
-from palpate_servo import Servo, Snapshot
+from palpate_servo import Snapshot
 
 from ..body.soft_body import SoftBody
-from ..shape.rotation_strain.finger_load import FingerLoad
+from ..shape.rotation_strain.finger_load import FingerLoad, alike
 from ..shape.rotation_strain.firmness import Firmness
-from ..shape.shapes import Shape, firmness_of
+from ..shape.shapes import Shape, pressed_by
 
-# It is looked for a little deeper than the fingers are: they may go on.
+# It is looked for a little deeper than fingers are that move: they may go on.
 AHEAD = 1.2
-# Fingers whose forces changed by less than this share press as they did.
-SAME = 0.03
+# Fingers whose forces changed by less than this share press as they did; by less than the other
+# between two calls, they are at rest.
+SAME, AT_REST = 0.03, 1e-6
 
 LINEAR = Firmness()
 
 
+class Firmed(Protocol):
+    """A servo, as far as it is told here."""
+
+    def set_firmness(self, root: float, whole: float, reach: float) -> None:
+        """As firmly as :class:`Firmness` says of these."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """At what it is looked: loads of a linear body, times ``ahead``."""
+
+    loads: tuple[FingerLoad, ...] = ()
+    ahead: float = 0.0
+
+
 @dataclass(eq=False)
 class Firming:
-    """Follows a servo's touch; between calls of :meth:`follow` a thread may be at work."""
+    """Follows a servo's touch; between calls of :meth:`follow` a thread may be at work.
 
-    servo: Servo
+    While fingers move, firmness is that of a press somewhat deeper; once they are at rest that of
+    the very press, as of one without a clock.
+    """
+
+    servo: Firmed
     body: SoftBody
     _finding: Future[Firmness] | None = None
     _worker: ThreadPoolExecutor = field(
@@ -33,7 +54,13 @@ class Firming:
     )
     _told: Firmness = LINEAR
     _shape: Shape | None = None
-    _looked_at: tuple[FingerLoad, ...] = ()
+    _looked: _Look = field(default_factory=_Look)
+    _before: tuple[FingerLoad, ...] = ()
+
+    @property
+    def looks(self) -> bool:
+        """Whether a thread is at work."""
+        return self._finding is not None
 
     def follow(self, snapshot: Snapshot, shape: Shape, young_modulus: float) -> None:
         """Tell the servo what was found, and look anew where the touch has changed. At once.
@@ -46,23 +73,33 @@ class Firming:
         loads = pressing(self.body, snapshot)
         is_other, self._shape = shape is not self._shape, shape
         if not loads or is_other:
-            self._looked_at = ()
+            self._looked = _Look()
             self._tell(LINEAR)
         if self._finding is not None:
             if not self._finding.done():
                 return
             found, self._finding = self._finding.result(), None
             # What another shape said, or of another touch, is looked for anew.
-            if self._looked_at:
+            if self._looked.loads:
                 self._tell(found)
-        if loads and shape.ready == 1.0 and not _alike(loads, self._looked_at):
-            self._looked_at = loads
-            deeper = [FingerLoad(one.nodes, AHEAD * one.forces, one.sticks) for one in loads]
-            self._finding = self._worker.submit(firmness_of, shape, deeper, young_modulus)
+        rests, self._before = alike(loads, self._before, AT_REST), loads
+        ahead = 1.0 if rests else AHEAD
+        if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
+            return
+        self._looked = _Look(loads, ahead)
+        self._finding = self._worker.submit(
+            _firmness, shape, self._looked, young_modulus, snapshot.held
+        )
 
     def close(self) -> None:
         """End; does not wait."""
         self._worker.shutdown(wait=False, cancel_futures=True)
+
+    def _knows(self, loads: Sequence[FingerLoad], ahead: float) -> bool:
+        looked = self._looked
+        if ahead > 1.0:
+            return alike(loads, looked.loads, SAME)
+        return looked.ahead == 1.0 and alike(loads, looked.loads, AT_REST)
 
     def _tell(self, firmness: Firmness) -> None:
         if firmness != self._told:
@@ -87,10 +124,10 @@ def pressing(body: SoftBody, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
     )
 
 
-def _alike(loads: tuple[FingerLoad, ...], others: tuple[FingerLoad, ...]) -> bool:
-    """Whether forces differ by little, on the same nodes."""
-    return len(loads) == len(others) and all(
-        np.array_equal(one.nodes, other.nodes)
-        and np.abs(one.forces - other.forces).sum() <= SAME * np.abs(one.forces).sum()
-        for one, other in zip(loads, others, strict=True)
-    )
+def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:
+    """Of loads that hold ``held``, J/Pa, as the servo counts it: with the near field."""
+    loads = [FingerLoad(one.nodes, look.ahead * one.forces, one.sticks) for one in look.loads]
+    found = pressed_by(shape, loads, young_modulus)
+    if not (found.energy > 0.0 and held > 0.0):
+        return found.firmness
+    return found.firmness.times(look.ahead**2 * held / found.energy)

@@ -6,10 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body.soft_body import SoftBody
 from ..contact.touches import PointTouch, ToolTouch
+from ..grip.cells import cells_of
 from .rotation_strain.finger_load import FingerLoad
 from .rotation_strain.firmness import Firmness
 from .shapes import Shape, firmness_of
+
+Array = NDArray[np.float64]
+
+# Parts at most that a hand holds each for itself.
+MOST_PARTS = 120
 
 One = TypeVar("One", PointTouch, ToolTouch, PointTouch | ToolTouch)
 
@@ -34,6 +44,15 @@ def loads_of(touches: Sequence[PointTouch | ToolTouch]) -> list[FingerLoad]:
         FingerLoad(one.nodes, one.nodal_forces, sticks=isinstance(one, PointTouch))
         for one in touches
         if len(one.nodes)
+    ]
+
+
+def held_loads(body: SoftBody, nodes: NDArray[np.int64], forces: Array) -> list[FingerLoad]:
+    """Loads by which a hand holds nodes (k,) of the mesh where forces (k, 3) hold a linear body."""
+    part = cells_of(body.mesh.nodes[nodes], MOST_PARTS)
+    return [
+        FingerLoad(nodes[part == one], forces[part == one], sticks=True)
+        for one in range(int(part.max(initial=-1)) + 1)
     ]
 
 

@@ -19,8 +19,8 @@ from ..errors import PalpateError
 from ..sentence import Sentence
 from .paper.paper_shape import PaperShape
 from .rotation_strain.finger_load import FingerLoad
-from .rotation_strain.firmness import Firmness, Pressed
-from .rotation_strain.rotation_strain_shape import RotationStrainShape
+from .rotation_strain.firmness import LINEAR, Firmness, Pressed
+from .rotation_strain.rotation_strain_shape import RotationStrainShape, frame_plan
 
 ShapeName: TypeAlias = Literal["linear", "paper", "real"]
 SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
@@ -114,7 +114,8 @@ class LinearShape(Shape):
 # How each is made, of a body and the file it came from, beside which tables may be kept.
 MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
     "linear": lambda body, _: LinearShape(body),
-    "real": lambda body, _: RotationStrainShape(body),
+    # What nobody holds has no rest to be relaxed to.
+    "real": lambda body, _: LinearShape(body) if body.is_free else RotationStrainShape(body),
     "paper": PaperShape,
 }
 
@@ -146,6 +147,11 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
     return MAKERS[shape_name(choice)](body, body_file)
 
 
+def is_felt(body: SoftBody) -> bool:
+    """Whether *real* tells a body's force, too: it does on the body's own nodes alone."""
+    return not (body.is_free or frame_plan(len(body.mesh.nodes) - len(body.fixed)).lattice_nodes)
+
+
 def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:
     """How much more firmly than a linear body this one presses back under these linear loads.
 
@@ -169,7 +175,7 @@ def pressed_by(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) 
     """
     if isinstance(shape, RotationStrainShape):
         return shape.pressed(loads, young_modulus)
-    return Pressed(Firmness(), None)
+    return LINEAR
 
 
 def shape_name(choice: str) -> ShapeName:

@@ -20,6 +20,7 @@ from ...core.rest.grip import Grip
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
+from ...core.shape.shapes import shape_name
 from ..layer import layers, stack
 from ..object.drawn_body import DrawnBody
 from ..played import mesh_cache
@@ -222,9 +223,9 @@ def _refusal(thing: bpy.types.Object) -> PalpateError | None:
             "or choose other Pins",
             name=thing.name,
         )
-    if chosen_shape(thing) != "linear":
+    if shape_name(chosen_shape(thing)) == "paper":
         return PalpateError(
-            "{name}: without pins it is drawn by the linear shape alone; choose Linear under Large "
+            "{name}: without pins it has no tables of the paper's; choose Real under Large "
             "Deformation",
             name=thing.name,
         )

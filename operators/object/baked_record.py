@@ -15,6 +15,9 @@ def record(
 ) -> None:
     """Make ``body``, stored under ``file_name``, the object's: tetrahedra, key and figures."""
     baked, compliance = thing.palpate, body.compliance
+    if not baked.body_key and not baked.is_property_set("shape"):
+        # The property's own default is what files from before have, which keep it.
+        baked.shape = "ROTATION_STRAIN"
     embedded_body.embed(thing, body)
     baked.preview_off = 0.0
     baked.body_key = body.key
@@ -27,6 +30,7 @@ def record(
         baked.baked_tolerance = 100 * compliance.tolerance
         baked.column_error = 100 * float(compliance.column_error)
     baked.node_count = len(body.mesh.nodes)
+    baked.pinned_count = len(body.fixed)
     baked.tet_count = len(body.mesh.tets)
     baked.free_surface_count = compliance.node_count
     baked.compliance_megabytes = compliance.nbytes / 1e6

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import bpy
@@ -17,9 +18,10 @@ import bpy
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
 from ...core.servo.session import Snapshot, drawn_loads
+from ...core.shape.found_behind import FoundBehind
 from ...core.shape.meeting import Meeting, Met
 from ...core.shape.rotation_strain.finger_load import FingerLoad
-from ...core.shape.shapes import LinearShape, Shape, shape
+from ...core.shape.shapes import LinearShape, Shape, is_felt, shape, shape_name
 from ..object.drawn_body import DrawnBody
 
 # Longest wait for a kept shape's table, s.
@@ -152,6 +154,20 @@ def closing_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Iterator[Shape]:
         yield made
     finally:
         made.close()
+
+
+def found_behind(thing: bpy.types.Object, drawn: DrawnBody) -> FoundBehind | None:
+    """A body of the chosen shape whose loads change, where that shape tells the force, too."""
+    name = shape_name(chosen_shape(thing))
+    if name != "real" or not is_felt(drawn.body):
+        return None
+    return FoundBehind(drawn.body, _last_real(drawn.at_rest), thing.palpate.young_modulus)
+
+
+@lru_cache(maxsize=1)
+def _last_real(body: SoftBody) -> Shape:
+    """Prepared once for the many strokes on an object."""
+    return shape(body, "real")
 
 
 def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:

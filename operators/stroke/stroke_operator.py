@@ -92,6 +92,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         except BaseException:
             self._give_up(thing)
             raise
+        finally:
+            self._stroke.close()
         if context.object != thing:
             make_active(context, thing)
 
@@ -208,7 +210,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             drag = self._drag.dragged(cursor, pressure, sliding=event.ctrl)
             self._drag = replace(drag, typed=self._typed.value(context.scene))
             self._follow(context)
-        elif event.type == "TIMER" and self._stroke.pace:
+        elif event.type == "TIMER" and self._stroke.moves:
             self._follow(context)
         return {"RUNNING_MODAL"}
 
@@ -237,7 +239,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             self._leave(context, give_up=True)
             return {"CANCELLED"}
         scene, thing = context.scene, self._thing()
-        asked, stroked = self._ended(thing)
+        with wait_cursor(context):
+            asked, stroked = self._ended(thing)
         self.tell(asked, self._frame, self._touched.turn)
         try:
             self._keep(scene, thing, asked, stroked)
@@ -272,6 +275,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         thing = self._handle.find()
         if give_up and thing is not None:
             self._give_up(thing)
+        self._stroke.close()
         self._stay.end(context)
 
     def _thing(self) -> bpy.types.Object:

@@ -59,6 +59,8 @@ def mesh_object(vertices: Any, faces: Any, name: str = "Thing") -> bpy.types.Obj
 def soft_cube(edge: float = 0.05, pins: str = "BELOW") -> bpy.types.Object:
     """A cube with its body: baked the first time, the same body again afterwards."""
     thing = cube(edge)
+    # Of which the figures of tests are, as of objects from before Real was what Make Soft chooses.
+    thing.palpate.shape = "LINEAR"
     if pins != "BELOW":
         thing.palpate.pin_mode = pins
     kept = Path(os.environ["BLENDER_USER_RESOURCES"]) / f"cube-{edge}-{pins}.npz"

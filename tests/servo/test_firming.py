@@ -2,10 +2,16 @@
 
 import numpy as np
 import pytest
+from bodies.baked_body import baked_body
+from bodies.soft_block import block_mesh
+from palpate_servo.harness import SteppedFingers
 
-from palpate.core.contact.single_press import touch_nearest
+from palpate.core.contact.place import nearest_place
+from palpate.core.contact.single_press import press_tool, touch_at, touch_nearest
+from palpate.core.contact.tool.pose import Pose, facing
+from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.servo.firming import Firming
-from palpate.core.servo.session import Pointer, native_body, servo_on
+from palpate.core.servo.session import Pointer, native_body, native_tool, servo_on
 from palpate.core.servo.settings import Settings
 from palpate.core.shape.felt import felt
 from palpate.core.shape.shapes import LinearShape, shape
@@ -81,3 +87,59 @@ def test_a_linear_shape_leaves_it_linear(cube_body, servo, real, eventually):
         assert is_there()
     assert servo.snapshot().firmness == 1.0
     firming.close()
+
+
+# Tools, and how deep they go: a plate's edges come to rest in one way where they are in by no more
+# than they are rounded.
+TIPS = {
+    "point": (None, 0.006),
+    "sphere": (sphere(0.006), 0.003),
+    "plate": (plate(0.012, 0.01), 0.0004),
+}
+TICKS, SAME = 400, 1e-6
+
+
+@pytest.fixture(scope="module", params=["cube", "bar"])
+def held_body(request, cube_body):
+    if request.param == "cube":
+        return cube_body
+    mesh = block_mesh((0.1, 0.03, 0.03), (10, 3, 3))
+    return baked_body(mesh, np.flatnonzero(mesh.nodes[:, 0] == 0.0), 0.3, 5_000.0)
+
+
+@pytest.mark.parametrize("tip", TIPS)
+def test_at_rest_it_presses_as_without_a_clock(held_body, tip, eventually):
+    body, (tool, depth) = held_body, TIPS[tip]
+    made = shape(body, "real")
+    made.wait_for(np.zeros(0, dtype=np.int64))
+    middle = body.mesh.nodes.mean(axis=0)
+    place = nearest_place(body, middle + np.array([0.003, 0.002, 0.1]))
+    by = depth * place.axis
+    turn = facing(-place.axis, np.eye(3)[0])
+    end = place.position + by
+    if tool is None:
+        linear = touch_at(body, place.triangle, place.alpha, by)
+    else:
+        end = end - (tool.radius if tip == "sphere" else 0.0) * place.axis
+        linear = press_tool(body, tool, Pose(end, turn))
+    (touch,) = felt(made, [linear], body.young_modulus).touches
+    native = native_body(body, whole=True)
+    path = end[None, None] - np.linspace(1.5, 0.0, 100)[:, None, None] * by
+    servo = SteppedFingers(native, path[0], Settings(body.young_modulus))
+    if tool is not None:
+        servo.set_tool(native_tool(body, native, tool), turn, 0)
+    servo.follow(path)
+    firming = Firming(servo, body)
+
+    def rests():
+        before = servo.snapshot().firmness
+        firming.follow(servo.snapshot(), made, body.young_modulus)
+        servo.follow(np.tile(end, (TICKS, 1, 1)))
+        return not firming.looks and servo.snapshot().firmness == before != 1.0
+
+    eventually(rests, "the firmness of the press")
+    firming.close()
+    force = servo.snapshot().contact_force
+    assert abs(np.linalg.norm(touch.force) / np.linalg.norm(linear.force) - 1.0) > 1e-3
+    np.testing.assert_allclose(force, touch.force, atol=SAME * np.abs(touch.force).max())
+    made.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,3 +30,15 @@ class FingerLoad:
         alike = np.full(len(sizes), 1.0 / max(1, len(sizes)))
         shares: Array = sizes / total if total > 0.0 else alike
         return shares
+
+
+def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: float = 0.0) -> bool:
+    """Whether the same fingers press on the same nodes, by forces that differ by no more than a
+    share of all of them.
+    """
+    return len(loads) == len(others) and all(
+        one.sticks == other.sticks
+        and np.array_equal(one.nodes, other.nodes)
+        and np.abs(one.forces - other.forces).sum() <= share * np.abs(one.forces).sum()
+        for one, other in zip(loads, others, strict=True)
+    )

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +62,15 @@ class Firmness:
         known = min(max(energy, 0.0), self.reach)
         return min(max(1.0 + self.root * math.sqrt(known) + self.whole * known, LEAST), MOST)
 
+    def times(self, share: float) -> Firmness:
+        """The same to the same depth, where ``share`` of the energy is held so deep."""
+        return replace(
+            self,
+            root=self.root / math.sqrt(share),
+            whole=self.whole / share,
+            reach=self.reach * share,
+        )
+
     @property
     def deepest(self) -> float:
         """G at the reach, and beyond."""
@@ -75,11 +84,16 @@ class Pressed:
     Attributes
     ----------
     firmness : of it.
+    energy : elastic, of the linear press, J/Pa.
     displacements : (f, 3) of the free nodes, metres; None where no rest was found so deep.
     """
 
     firmness: Firmness
+    energy: float
     displacements: Array | None
+
+
+LINEAR = Pressed(Firmness(), 0.0, None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +115,7 @@ class FirmBody:
         """The same, and the body at rest there."""
         whole = _Press.of(self, loads)
         if whole is None:
-            return Pressed(Firmness(), None)
+            return LINEAR
         known, rest = self._led(whole)
         if max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
             by_nodes = _Press.of(self, loads, by_nodes=True)
@@ -111,7 +125,7 @@ class FirmBody:
         deepest = max(known)
         told = [(depth, known[depth]) for depth in sorted({0.0, min(HALF, deepest), deepest})]
         moved = rest.displacements if rest is not None and deepest == DEPTHS[-1] else None
-        return Pressed(_through(told, whole.energy), moved)
+        return Pressed(_through(told, whole.energy), whole.energy, moved)
 
     def _led(self, press: _Press) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and the deepest."""
@@ -120,7 +134,7 @@ class FirmBody:
         for depth in DEPTHS:
             ways = depth * press.ways
             further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
-            share = float(further.forces @ press.ways) / (2.0 * depth * press.energy)
+            share = float(further.forces @ press.ways) / (depth * press.work)
             # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
             if further.left > ENOUGH or (press.is_of_tools and depth * share < before):
                 break
@@ -151,12 +165,14 @@ class _Press:
     ----------
     patterns : what forces are made of.
     ways : (p,), work of each on the linear displacement.
+    work : of as much of each as leads a linear body there, J/Pa.
     energy : elastic, J/Pa.
     is_of_tools : and of no point.
     """
 
     patterns: Patterns
     ways: Array
+    work: float
     energy: float
     is_of_tools: bool
 
@@ -165,28 +181,30 @@ class _Press:
         cls, body: FirmBody, loads: Sequence[FingerLoad], by_nodes: bool = False
     ) -> _Press | None:
         """Of these loads; ``by_nodes``: each node of a tool's is led by itself."""
-        patterns, linear = [], []
+        patterns: list[Array] = []
+        pressed = [body.solid.on_free_nodes(load.nodes, load.forces) for load in loads]
+        if not any(one.any() for one in pressed):
+            return None
 
-        def add(nodes: NDArray[np.int64], forces: Array, size: float) -> None:
+        def add(nodes: NDArray[np.int64], forces: Array) -> None:
             whole = body.solid.on_free_nodes(nodes, forces)
             if whole.any():
                 patterns.append(whole)
-                linear.append(size)
 
         for load in loads:
             if load.sticks:
-                for axis, size in zip(np.eye(3), load.forces.sum(axis=0), strict=True):
-                    add(load.nodes, load.weights[:, None] * axis, size)
+                for axis in np.eye(3):
+                    add(load.nodes, load.weights[:, None] * axis)
             elif by_nodes:
                 sizes = np.linalg.norm(load.forces, axis=1)
                 for one in np.flatnonzero(sizes > LIGHTEST * sizes.max(initial=0.0)):
-                    add(load.nodes[[one]], load.forces[[one]], 1.0)
+                    add(load.nodes[[one]], load.forces[[one]])
             else:
-                add(load.nodes, load.forces, 1.0)
-        if not any(linear):
-            return None
-        moved = np.stack([body.solid.linear(one) for one in patterns])
-        made, given = Patterns(np.stack(patterns), moved), np.array(linear)
-        ways: Array = made.compliance @ given
+                add(load.nodes, load.forces)
+        made = Patterns(np.stack(patterns), np.stack([body.solid.linear(one) for one in patterns]))
+        whole: Array = np.sum(pressed, axis=0)
+        linear = body.solid.linear(whole)
+        ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
+        work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())
         is_of_tools = not any(load.sticks for load in loads)
-        return cls(made, ways, 0.5 * float(given @ ways), is_of_tools)
+        return cls(made, ways, work, energy, is_of_tools)

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad
-from .firmness import FirmBody, Firmness, Pressed
+from .finger_load import FingerLoad, alike
+from .firmness import LINEAR, FirmBody, Pressed
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
@@ -108,11 +108,11 @@ class RotationStrainShape:
         """
         made = self._made.result() if self._made.done() else None
         if not isinstance(made, _OnOwnNodes):
-            return Pressed(Firmness(), None)
+            return LINEAR
         unit = [FingerLoad(load.nodes, load.forces / young_modulus, load.sticks) for load in loads]
         with self._pressing:
             # What is drawn and what is felt are asked for one after the other.
-            if self._last is None or not _same(self._last[0], unit):
+            if self._last is None or not alike(self._last[0], unit):
                 self._last = unit, made.pressed(unit)
             return self._last[1]
 
@@ -151,15 +151,6 @@ class RotationStrainShape:
         if not self._is_ended:
             self._share = share
         return not self._is_ended
-
-
-def _same(loads: Sequence[FingerLoad], others: Sequence[FingerLoad]) -> bool:
-    return len(loads) == len(others) and all(
-        one.sticks == other.sticks
-        and np.array_equal(one.nodes, other.nodes)
-        and np.array_equal(one.forces, other.forces)
-        for one, other in zip(loads, others, strict=True)
-    )
 
 
 class _Made(Protocol):

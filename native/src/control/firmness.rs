@@ -17,6 +17,8 @@ const LEAST: f64 = 0.3;
 const MOST: f64 = 3.0;
 /// Another firmness is there within about this time, s.
 const FADING: f64 = 0.05;
+/// What adds less than this adds nothing.
+const NONE: f64 = 1e-12;
 
 /// Firmness of a touch; by default that of the linear body.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -63,15 +65,30 @@ impl Firmness {
     }
 
     /// A tick of `dt` s nearer to another.
+    ///
+    /// What each adds at its own reach is what fades: of a shallow press the numbers themselves are those of a
+    /// steep curve, which must not be followed to the reach of a deep one.
     #[must_use]
     pub fn faded(&self, to: &Self, dt: f64) -> Self {
         // A number also where the time between ticks is none or has no end.
         let share = 1.0 / (1.0 + FADING / dt);
         let between = |from: f64, to: f64| from + (to - from) * share;
+        let at_reach = |one: &Self| (one.root * one.reach.sqrt(), one.whole * one.reach);
+        let (from, end) = (at_reach(self), at_reach(to));
+        let (root, whole) = (between(from.0, end.0), between(from.1, end.1));
+        // A linear one is that to any depth.
+        let reach = match (self.is_linear(), to.is_linear()) {
+            (true, _) => to.reach,
+            (_, true) => self.reach,
+            _ => between(self.reach, to.reach),
+        };
+        if reach <= 0.0 || (to.is_linear() && root.abs() + whole.abs() <= NONE) {
+            return *to;
+        }
         Self {
-            root: between(self.root, to.root),
-            whole: between(self.whole, to.whole),
-            reach: between(self.reach, to.reach),
+            root: root / reach.sqrt(),
+            whole: whole / reach,
+            reach,
         }
     }
 }
@@ -121,6 +138,28 @@ mod tests {
         assert!(Firmness::default().is_linear());
         assert_eq!(Firmness::default().at(1.0), 1.0);
         assert_eq!(Firmness::default().mean(1.0), 1.0);
+    }
+
+    #[test]
+    fn between_two_of_them_it_is_never_beyond_both() {
+        let shallow = Firmness {
+            root: 0.002 / 1e-6,
+            whole: -0.001 / 1e-12,
+            reach: 1e-12,
+        };
+        let mut now = shallow;
+        for _ in 0..500 {
+            now = now.faded(&FIRM, 1e-3);
+            for energy in [1e-13, 1e-6, 0.1, 4.0] {
+                assert!(now.at(energy) > 1.0 - 1e-9 && now.at(energy) < FIRM.at(4.0));
+            }
+        }
+        let mut back = FIRM;
+        for _ in 0..100_000 {
+            back = back.faded(&Firmness::default(), 1e-3);
+            assert!(back.at(2.0) >= 1.0 && back.at(2.0) <= FIRM.at(4.0));
+        }
+        assert!(back.is_linear());
     }
 
     #[test]

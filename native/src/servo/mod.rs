@@ -202,6 +202,7 @@ impl Servo {
         published.count = self.fingers.len();
         published.placement = frame.placement();
         published.firmness = moment.firmness.map_or(1.0, |firm| firm.share);
+        published.held = self.pressed;
         let young_modulus = moment.settings.young_modulus;
         for (number, shot) in shots.iter().flatten().enumerate() {
             published.reports[number] = *self.fingers[number].tell(shot, frame, young_modulus);

@@ -79,8 +79,10 @@ pub struct Published {
     pub count: usize,
     /// Samples not recorded because nobody emptied the ring.
     pub samples_lost: u64,
-    /// Factor by which forces are other than a linear body's; 0 before the first tick.
+    /// Factor by which forces are other than a linear body's.
     pub firmness: f64,
+    /// Elastic energy that the linear contact holds so deep, at unit modulus, J/Pa.
+    pub held: f64,
     /// Where the body is after the tick; one that is held stays.
     pub placement: Placement,
 }
@@ -90,6 +92,7 @@ impl Published {
     pub fn before_the_start(count: usize) -> Self {
         let mut published = Self {
             count,
+            firmness: 1.0,
             ..Self::default()
         };
         for report in &mut published.reports[..count] {

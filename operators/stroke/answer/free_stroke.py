@@ -17,18 +17,17 @@ from ...lying.before import Before
 from ...lying.coming_down import refuse_played, show
 from ...lying.free_body import FreeBody, Lying, lie, supports_under
 from ...object.drawn_body import DrawnBody
+from ...shape.drawn_shape import found_behind
 from .free_hold import FreeHold
 from .free_push import FreePush
 from .motion import Asked, Motion
-from .stroke import Stroke
+from .stroke import PACE, Stroke
 from .stroked import Stroked
 
 Array = NDArray[np.float64]
 
 # From picture to picture a body goes on by so many ticks, of so many seconds.
 TICKS, TICK = 20, 4e-3
-# Seconds between pictures.
-PACE = 1.0 / 30.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +52,7 @@ class FreeStroke:
     rested: Lying
     _before: Before
     _alone: FreeBody
-    pace = PACE
+    pace, moves = PACE, True
 
     @classmethod
     def begin(
@@ -85,6 +84,9 @@ class FreeStroke:
     def give_back(self, thing: bpy.types.Object) -> None:
         """Have the object as it was before."""
         self._before.give_back(thing)
+
+    def close(self) -> None:
+        """Nothing goes on in the background."""
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
         """Where the body comes to rest under hands that go where they are asked to; and what was
@@ -203,4 +205,6 @@ def stroke_of(
     """
     if drawn.body.is_free:
         return FreeStroke.begin(thing, drawn, grips)
-    return Stroke(drawn, grips, thing.palpate.young_modulus, thing.palpate.static_friction)
+    chosen = thing.palpate
+    behind = found_behind(thing, drawn)
+    return Stroke(drawn, grips, chosen.young_modulus, chosen.static_friction, behind)

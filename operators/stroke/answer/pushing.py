@@ -10,6 +10,7 @@ from ....core.contact.press import ContactSettings, Press
 from ....core.contact.touches import ToolTouch
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
+from ....core.shape.felt import loads_of
 from ...object.drawn_body import DrawnBody
 from .fingertips import Fingertips
 from .motion import Asked
@@ -69,4 +70,5 @@ class Pushing:
             self.press.body.deform(nodes, forces, young_modulus),
             float(np.linalg.norm(made[0].force)),
             touches=tuple(made),
+            loads=tuple(loads_of(made)),
         )

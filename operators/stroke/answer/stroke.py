@@ -11,6 +11,8 @@ import numpy as np
 
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
+from ....core.shape.felt import held_loads
+from ....core.shape.found_behind import FoundBehind
 from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
 from .motion import Asked, Motion
@@ -23,6 +25,8 @@ from .thickness import Thickness
 # each goes on as far as the one before tells.
 MOST_SQUEEZED, ALMOST, LEAST_SQUEEZED = 0.8, 0.97, 0.05
 MOST_STEPS = 6
+# Seconds between pictures.
+PACE = 1.0 / 30.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,24 +43,50 @@ class Stroke:
     drawn : the body.
     grips : the place, then its mirror images.
     young_modulus, friction : of the object.
+    behind : its shape, where that is no linear one.
     """
 
     drawn: DrawnBody
     grips: tuple[Grip, ...]
     young_modulus: float
     friction: float
-    # Seconds between pictures while the pointer stays: none, for nothing moves then.
-    pace = 0.0
+    behind: FoundBehind | None = None
+
+    @property
+    def pace(self) -> float:
+        """Seconds between pictures while the pointer stays; 0 where nothing moves then."""
+        return 0.0 if self.behind is None else PACE
+
+    @property
+    def moves(self) -> bool:
+        """Whether there is more to draw though the pointer stays."""
+        return self.behind is not None and self.behind.news
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
-        """What a motion does; and what was done of it, where it asked to go deeper than the body is
-        thick.
+        """What a motion does, by the object's shape, waiting for that; and what was done of it,
+        where it asked to go deeper than the body is thick.
 
         Raises
         ------
         PalpateError
             The place is pinned; the fingertip is too small for the body; it goes no deeper.
         """
+        return self.ended(*self._linear(asked))
+
+    def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
+        """The same while the pointer moves: as far as the shape is known."""
+        done, linear = self._linear(asked)
+        if self.behind is None:
+            return done, linear
+        return done, linear.shaped(self.behind.now(linear.loads))
+
+    def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
+        """What came of the stroke once all is at rest."""
+        if self.behind is None or asked.nothing:
+            return asked, stroked
+        return asked, stroked.shaped(self.behind.at_rest(stroked.loads))
+
+    def _linear(self, asked: Asked) -> tuple[Asked, Stroked]:
         # A pull begins at a depth of -0.
         inward = asked.motion is Motion.PUSH and math.copysign(1.0, asked.amount) > 0.0
         thickness = self._thickness
@@ -74,14 +104,6 @@ class Stroke:
             done = replace(asked, amount=min(asked.amount, farther))
         return (asked if done.amount == asked.amount else done), stroked
 
-    def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
-        """The same while the pointer moves."""
-        return self.stroked(asked)
-
-    def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
-        """What came of the stroke once all is at rest: the same."""
-        return asked, stroked
-
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Nothing moves an object that is pinned."""
 
@@ -91,12 +113,18 @@ class Stroke:
     def give_back(self, thing: bpy.types.Object) -> None:
         """Nothing has moved it."""
 
+    def close(self) -> None:
+        """End what goes on in the background."""
+        if self.behind is not None:
+            self.behind.close()
+
     def _done(self, asked: Asked, *, inward: bool) -> Stroked:
         if inward and self._pushing.reaches:
             return self._pushing.to(asked, self.young_modulus)
         answer = self._held.answer(asked.shares(self.grips[0].normal), self.young_modulus)
         force = float(np.linalg.norm(answer.force))
-        return Stroked(answer.displacements, force, answer.torque)
+        loads = held_loads(self.drawn.body, answer.nodes, answer.forces)
+        return Stroked(answer.displacements, force, answer.torque, loads=tuple(loads))
 
     @cached_property
     def _thickness(self) -> Thickness | None:

@@ -1,4 +1,7 @@
-"""The same press by headless Blender, by the command line and by the running servo: one force."""
+"""The same press by headless Blender, by the command line and by the running servo: one force.
+
+By the material's own law, as by default.
+"""
 
 from __future__ import annotations
 
@@ -58,6 +61,7 @@ def test_one_press_three_ways(thing, name, tmp_path, capsys):
     chosen.tip, chosen.tip_turn = tip, "SURFACE"
     chosen.tip_radius, chosen.plate_width, chosen.plate_depth = 0.008, 0.016, 0.012
     thing.palpate.static_friction = friction
+    thing.palpate.shape = "ROTATION_STRAIN"
     drawn = part("operators.object.drawn_body").open_body(thing, scene)
     body = drawn.body
     places = [place_beside(body, one) for one in where]
@@ -143,6 +147,9 @@ def by_servo(drawn, thing, blender, places, bys):
     turns = [np.eye(3) if tools[0] is None else touch.pose.rotation for touch in blender]
     settings = part("core.servo.settings").Settings(thing.palpate.young_modulus, orientations=turns)
     native = session.native_body(body, whole=True)
+    young = thing.palpate.young_modulus
+    real = part("core.shape.shapes").shape(body, "real")
+    real.wait_for(np.zeros(0, dtype=np.int64))
     with session.servo_on(native, settings) as servo:
         for start in starts[1:]:
             servo.add(session.Pointer(start))
@@ -154,7 +161,9 @@ def by_servo(drawn, thing, blender, places, bys):
             here = [start + step * (end - start) for start, end in zip(starts, ends, strict=True)]
             for finger, place in enumerate(here):
                 servo.set_target(place, finger=finger)
-            shots = rested(servo, here)
+            rested(servo, here)
+        firming = part("core.servo.firming").Firming(servo, body)
+        shots = firm(servo, firming, real, young)
     if tools[0] is not None:
         return [shot.contact_force for shot in shots], [touch.force for touch in blender]
     # The god object may have gone to a place that is nearer.
@@ -162,8 +171,9 @@ def by_servo(drawn, thing, blender, places, bys):
         body,
         [shot.proxy for shot in shots],
         [shot.probe - shot.proxy for shot in shots],
-        part("core.contact.press").ContactSettings(thing.palpate.young_modulus),
+        part("core.contact.press").ContactSettings(young),
     )
+    touches = part("core.shape.felt").felt(real, touches, young).touches
     return [shot.contact_force for shot in shots], [touch.force for touch in touches]
 
 
@@ -177,6 +187,17 @@ def rested(servo, ends):
         assert time.monotonic() < deadline
         time.sleep(0.01)
     time.sleep(0.15)
+
+
+def firm(servo, firming, real, young):
+    """The fingers once they press as firmly as the body does."""
+    deadline, before = time.monotonic() + 20.0, 1.0
+    while firming.looks or before == 1.0 or servo.snapshot().firmness != before:
+        assert time.monotonic() < deadline
+        before = servo.snapshot().firmness
+        firming.follow(servo.snapshot(), real, young)
+        time.sleep(0.1)
+    firming.close()
     return servo.snapshot().fingers
 
 

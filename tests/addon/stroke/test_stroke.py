@@ -165,3 +165,58 @@ def test_a_push_ends_where_the_body_does(thing):
     assert np.allclose(farther, whole, atol=0.02 * np.abs(whole).max())
     bottom = rest_places(thing)[:, 2].min()
     assert (rest_places(thing) + farther)[:, 2].min() > bottom - 0.001
+
+
+@pytest.fixture
+def real(thing):
+    thing.palpate.shape = "ROTATION_STRAIN"
+    return thing
+
+
+@pytest.mark.parametrize("name", list(STROKES))
+def test_by_the_materials_law_every_stroke_ends_where_its_hand_is(real, name):
+    scene, room = bpy.context.scene, "operators.stroke.answer"
+    drawn = part("operators.object.drawn_body").open_body(real, scene)
+    motions, asked = part(f"{room}.motion"), dict(STROKES[name])
+    motion = motions.Motion[asked.pop("motion")]
+    amount, by = next(iter(asked.values())), None
+    if motion is motions.Motion.GRAB:
+        amount, by = 0.0, np.array(amount)
+    wanted = motions.Asked(motion, 2.0 * amount if name == "push" else amount, by)
+    grips = part(f"{room}.grips").grips_at(drawn, np.array(TOP), 0.012, (False,) * 3)
+    ends = {}
+    for shape in ("LINEAR", "ROTATION_STRAIN"):
+        real.palpate.shape = shape
+        stroke = part(f"{room}.free_stroke").stroke_of(real, drawn, grips)
+        ends[shape] = stroke.stroked(wanted)[1]
+        stroke.close()
+    linear, law = ends["LINEAR"], ends["ROTATION_STRAIN"]
+    most = np.abs(linear.displacements).max()
+    assert np.abs(law.displacements - linear.displacements).max() > 1e-3 * most
+    assert law.share != 1.0
+    np.testing.assert_allclose(law.force, law.share * linear.force, rtol=1e-9)
+    np.testing.assert_allclose(law.torque, law.share * linear.torque, rtol=1e-9, atol=1e-12)
+    if name != "push":  # Of a fingertip's places each may slide.
+        held = drawn.body.free_index(np.concatenate([one.nodes for one in linear.loads]))
+        off = (law.displacements - linear.displacements)[held]
+        assert np.abs(off).max() < 0.02 * most
+
+
+def test_a_push_is_felt_as_a_press_is(real):
+    scene, room = bpy.context.scene, "operators.stroke.answer"
+    drawn = part("operators.object.drawn_body").open_body(real, scene)
+    grips = part(f"{room}.grips").grips_at(drawn, np.array(TOP), 0.012, (False,) * 3)
+    stroke = part(f"{room}.free_stroke").stroke_of(real, drawn, grips)
+    motions = part(f"{room}.motion")
+    _, pushed = stroke.stroked(motions.Asked(motions.Motion.PUSH, 0.006))
+    stroke.close()
+    (tip,) = pushed.touches
+    shape = part("core.shape.shapes").shape(drawn.at_rest, "real")
+    shape.wait_for(tip.nodes)
+    modulus = real.palpate.young_modulus
+    settings = part("core.contact.press").ContactSettings(modulus, real.palpate.static_friction)
+    press = part("core.contact.single_press").press_tool
+    linear = press(drawn.body, tip.tool, tip.pose, settings)
+    (touch,) = part("core.shape.felt").felt(shape, [linear], modulus).touches
+    assert pushed.force == pytest.approx(np.linalg.norm(touch.force), rel=1e-6)
+    assert abs(pushed.force / np.linalg.norm(linear.force) - 1.0) > 1e-3

@@ -13,6 +13,7 @@ import pytest
 
 from palpate.cli.main import main
 from palpate.cli.press import servo as servo_command
+from palpate.cli.press.from_above import HAND_FORCE, press_from_above
 from palpate.cli.press.servo_report import for_people
 from palpate.core.record.read_recording import read_recording
 from palpate.core.servo import ports
@@ -107,8 +108,8 @@ def test_people_get_the_stages_of_the_tick_as_a_table():
 
 
 def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):
-    soft = servo_command.press_from_above(cube, 1_000.0)
-    firm = servo_command.press_from_above(cube, 1e8)
+    soft = press_from_above(cube, 1_000.0)
+    firm = press_from_above(cube, 1e8)
     assert soft.at == firm.at
     assert soft.at[2] == pytest.approx(0.05)
     assert soft.rest[2] > soft.at[2]
@@ -116,7 +117,7 @@ def test_a_firmer_body_is_pressed_with_no_more_force_than_the_hand_has(cube):
     assert soft.by[:2] == pytest.approx((0.0, 0.0))
     assert -0.006 < soft.by[2] < -0.005
     # So firm that nothing but the hand's own spring gives way.
-    assert firm.by[2] == pytest.approx(-servo_command.HAND_FORCE / firm.hand_stiffness, rel=1e-3)
+    assert firm.by[2] == pytest.approx(-HAND_FORCE / firm.hand_stiffness, rel=1e-3)
 
 
 @SIGNALS

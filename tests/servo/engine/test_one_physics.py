@@ -51,7 +51,7 @@ def test_a_sphere_led_aside(name, tmp_path, capsys):
     place = nearest_place(body, body.mesh.nodes.mean(axis=0) + np.array(ABOVE) * size)
     by = DEPTH * place.axis + ASIDE * np.linalg.svd(place.axis[None])[2][1]
     words = ["--at", *map(repr, place.position.tolist()), "--by", *map("{:.17f}".format, by)]
-    words += ["--tool", SPHERE, "--friction", repr(FRICTION), "--json"]
+    words += ["--tool", SPHERE, "--friction", repr(FRICTION), "--json", "--shape", "linear"]
     assert main(["press", str(file), *words]) == 0
     told = json.loads(capsys.readouterr().out)
 

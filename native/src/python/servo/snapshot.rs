@@ -177,12 +177,13 @@ pub struct Loads {
     pub borne: Vec<(u32, DVec3)>,
 }
 
-/// All fingers of a tick, and itself that of finger 0.
+/// All fingers of a tick; itself that of finger 0.
 #[pyclass(frozen, extends = FingerSnapshot, module = "palpate_servo")]
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
     placement: Placement,
     firmness: f64,
+    held: f64,
     loads: Loads,
 }
 
@@ -205,6 +206,7 @@ impl Snapshot {
             fingers,
             placement: published.placement,
             firmness: published.firmness,
+            held: published.held,
             loads,
         };
         Py::new(py, (told, first))
@@ -235,11 +237,11 @@ impl Snapshot {
     }
     #[getter]
     fn firmness(&self) -> f64 {
-        if self.firmness > 0.0 {
-            self.firmness
-        } else {
-            1.0
-        }
+        self.firmness
+    }
+    #[getter]
+    fn held(&self) -> f64 {
+        self.held
     }
     #[getter]
     fn placement<'py>(&self, py: Python<'py>) -> PyResult<(Vector<'py>, Matrix<'py>)> {
@@ -248,24 +250,19 @@ impl Snapshot {
     }
     #[getter]
     fn remembered_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        PyArray1::from_iter(
-            py,
-            self.loads
-                .remembered
-                .iter()
-                .map(|&(node, _)| i64::from(node)),
-        )
+        numbers(py, &self.loads.remembered)
     }
     #[getter]
     fn remembered_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
         table(py, self.loads.remembered.iter().map(|&(_, force)| force))
     }
     fn seen_from_body(&self, py: Python<'_>) -> PyResult<Py<Self>> {
-        let fingers = self.fingers.iter();
-        let fingers: Vec<_> = fingers.map(|one| one.seen_from(&self.placement)).collect();
+        let seen = |one: &FingerSnapshot| one.seen_from(&self.placement);
+        let fingers: Vec<_> = self.fingers.iter().map(seen).collect();
         let first = fingers[0].clone();
         let told = Self {
             firmness: self.firmness,
+            held: self.held,
             fingers,
             placement: self.placement,
             loads: self.loads.clone(),
@@ -274,10 +271,7 @@ impl Snapshot {
     }
     #[getter]
     fn borne_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        PyArray1::from_iter(
-            py,
-            self.loads.borne.iter().map(|&(node, _)| i64::from(node)),
-        )
+        numbers(py, &self.loads.borne)
     }
     #[getter]
     fn borne_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
@@ -295,6 +289,10 @@ fn patch_of(
     patch: Option<&PressedPatch>,
 ) -> Option<Box<PressedPatch>> {
     let presses_with_tool = shot.touching && shot.hold.is_none();
-    let patch = patch.filter(|patch| presses_with_tool && patch.tick == shot.tick)?;
-    Some(Box::new(patch.clone()))
+    let patch = patch.filter(|patch| presses_with_tool && patch.tick == shot.tick);
+    patch.cloned().map(Box::new)
+}
+
+fn numbers<'py>(py: Python<'py>, loads: &[(u32, DVec3)]) -> Bound<'py, PyArray1<i64>> {
+    PyArray1::from_iter(py, loads.iter().map(|&(node, _)| i64::from(node)))
 }
