@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bodies.free_shapes import free_block
 from bodies.soft_block import soft_block
 
 from palpate.core.contact.tool.pose import Pose
@@ -42,6 +43,20 @@ def test_a_higher_floor_bears_it_higher(cube):
         Resting(cube, [Floor(height, friction=0.0)]).settle().centre[2] for height in (0.0, -0.03)
     )
     assert low - high == pytest.approx(0.03, abs=1e-8)
+
+
+@pytest.mark.parametrize("cells", [(3, 3, 9), (5, 5, 15)])
+def test_a_column_is_pressed_together_by_its_own_weight_as_linear_theory_has_it(cells):
+    width, height, modulus = 0.03, 0.09, 300_000.0
+    column = free_block((width, width, height), cells, young_modulus=modulus)
+    rest = Resting(column, [Floor(friction=0.0)]).settle()
+    at_rest = column.mesh.nodes[column.mesh.surface_nodes][:, 2]
+    lower = at_rest - rest.surface()[:, 2]
+    top, foot = at_rest > at_rest.max() - 1e-9, at_rest < at_rest.min() + 1e-9
+    load = column.mass * EARTH[2] / width**2
+    assert lower[foot].mean() - lower[top].mean() == pytest.approx(
+        0.5 * load * height / modulus, rel=0.02
+    )
 
 
 def test_finger_and_floor_carry_the_weight_together(cube):
