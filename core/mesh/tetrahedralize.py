@@ -18,6 +18,10 @@ from .tet_mesh import OUTWARD_FACES, TetMesh, pieces, signed_volumes
 
 # Face-connected pieces below this share of the volume are debris of the envelope, not parts.
 CRUMB_SHARE = 1e-3
+# Passes that improve tetrahedra. Most shapes end by themselves after 4 to 8; where parts cross, as
+# in Suzanne, it goes on to no better ones: worst energy 12 after 10 passes, 31 after the 14 that it
+# took for itself. Without a limit a rabbit with fine edges took 100 s, and 21 for as many nodes.
+MOST_PASSES = 10
 
 
 def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetMesh:
@@ -50,6 +54,7 @@ def tetrahedralize(surface: Surface, edge_length: float, epsilon: float) -> TetM
         surface.triangles[order].astype(np.int32),
         edge_length_fac=edge_length,
         epsilon=epsilon,
+        num_opt_iter=MOST_PASSES,
         quiet=False,
         loglevel=2,
     )

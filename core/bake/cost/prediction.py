@@ -34,15 +34,16 @@ GRADED_NODES = 0.23
 # nil for boxes and large for limbs, between half and twice.
 NODE_SPREAD = 1.5
 
-# Seconds of fTetWild: NODE a node, and for following the surface DETAIL triangles^0.3 (bending /
-# diagonal) (epsilon / 0.003)^-0.7. It is not deterministic, and what makes it slow is not all in
-# these: of 25 runs on twenty shapes, 23 were within this factor, and the farthest off by three;
-# a toy with thin fingers took five times as long.
-NODE_SECONDS = 4.0e-4
-DETAIL_SECONDS = 0.052
-DETAIL_EXPONENTS = (0.3, -0.7)
+# Seconds of fTetWild: NODE a node, and for following the surface, which a smaller epsilon makes
+# longer by its power, TRIANGLE a triangle and DETAIL bending / diagonal. It is not deterministic:
+# of 57 runs on nineteen shapes, edge lengths 0.03 to 0.08 and epsilons 0.001 and 0.003, 53 were
+# within a factor of two, and the farthest off by 2.2.
+NODE_SECONDS = 5.4e-4
+TRIANGLE_SECONDS = 4.0e-4
+DETAIL_SECONDS = 0.24
+FINENESS_EXPONENT = -0.5
 USUAL_EPSILON = 0.003
-TETRAHEDRALIZE_SPREAD = 2.2
+TETRAHEDRALIZE_SPREAD = 2.0
 # Starting the child process and what it imports.
 START_SECONDS = 0.7
 
@@ -185,11 +186,10 @@ def predicted_mesh(size: ShapeSize, settings: BakeSettings) -> MeshSize:
 def tetrahedralize_seconds(size: ShapeSize, settings: BakeSettings, nodes: int) -> float:
     """Seconds of fTetWild for a surface that becomes so many nodes."""
     triangles = min(size.triangles, settings.decimate_above)
-    by_triangles, by_epsilon = DETAIL_EXPONENTS
-    fineness = (settings.epsilon / USUAL_EPSILON) ** by_epsilon
+    fineness = (settings.epsilon / USUAL_EPSILON) ** FINENESS_EXPONENT
     bends = _bends(size) / size.diagonal
-    following = DETAIL_SECONDS * triangles**by_triangles * bends * fineness
-    return float(NODE_SECONDS * nodes + following)
+    following = TRIANGLE_SECONDS * triangles + DETAIL_SECONDS * bends
+    return float(NODE_SECONDS * nodes + following * fineness)
 
 
 def _bends(size: ShapeSize) -> float:
