@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 
 from ...core.quantities import duration, memory, waiting
-from ...core.shape.rotation_strain.rotation_strain_shape import frame_plan
+from ...core.shape.rotation_strain.rotation_strain_shape import MOST_FELT
 from ...core.shape.shape_cost import BodySize, ShapeCost, shape_cost
 from ...core.shape.shapes import shape_name
 from ...operators.reporting.translated import shown
@@ -67,7 +67,7 @@ def _limit_of(thing: bpy.types.Object) -> str:
     baked = thing.palpate
     if baked.pin_mode == "NONE":
         return "Without pins it is drawn and felt as a linear body"
-    if frame_plan(baked.node_count - baked.pinned_count).lattice_nodes:
+    if baked.node_count - baked.pinned_count > MOST_FELT:
         return (
             "So large a body is drawn so but for what is finer than a coarse lattice, and felt as "
             "a linear one; a coarser bake is felt, too"

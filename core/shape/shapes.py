@@ -20,7 +20,7 @@ from ..sentence import Sentence
 from .paper.paper_shape import PaperShape
 from .rotation_strain.finger_load import FingerLoad
 from .rotation_strain.firmness import LINEAR, Firmness, Pressed
-from .rotation_strain.rotation_strain_shape import RotationStrainShape, frame_plan
+from .rotation_strain.rotation_strain_shape import MOST_FELT, RotationStrainShape
 
 ShapeName: TypeAlias = Literal["linear", "paper", "real"]
 SHAPES: tuple[ShapeName, ...] = get_args(ShapeName)
@@ -149,7 +149,7 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
 
 def is_felt(body: SoftBody) -> bool:
     """Whether *real* tells a body's force, too: it does on the body's own nodes alone."""
-    return not (body.is_free or frame_plan(len(body.mesh.nodes) - len(body.fixed)).lattice_nodes)
+    return not body.is_free and len(body.mesh.nodes) - len(body.fixed) <= MOST_FELT
 
 
 def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:

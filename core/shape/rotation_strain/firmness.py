@@ -127,6 +127,13 @@ class FirmBody:
         moved = rest.displacements if rest is not None and deepest == DEPTHS[-1] else None
         return Pressed(_through(told, whole.energy), whole.energy, moved)
 
+    def on_surface(self, loads: Sequence[FingerLoad]) -> Pressed:
+        """The same with the displacements of the free surface nodes alone."""
+        found = self.pressed(loads)
+        if found.displacements is None:
+            return found
+        return replace(found, displacements=found.displacements[self.solid.surface])
+
     def _led(self, press: _Press) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and the deepest."""
         known, rest = {0.0: 1.0}, None

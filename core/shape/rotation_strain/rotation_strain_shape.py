@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from threading import Lock
 from typing import Protocol
 
@@ -40,6 +40,8 @@ class FramePlan:
 # For bodies of at most so many free nodes, and for all others: what a frame of 60 Hz holds.
 PLANS = ((600, FramePlan(4)), (1200, FramePlan(3)), (2000, FramePlan(2)))
 PLAN_OF_LARGE = FramePlan(2, 1200)
+# To so many free nodes it is felt, too, and comes to rest where somebody waits: on its own nodes.
+MOST_FELT = 5000
 
 
 def frame_plan(free_nodes: int) -> FramePlan:
@@ -104,16 +106,16 @@ class RotationStrainShape:
 
     def pressed(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
         """How firmly it presses back, see :func:`.shapes.firmness_of`, and where its free surface
-        comes to rest; linear and nowhere until prepared, and for a body on a lattice.
+        comes to rest; linear and nowhere until prepared, and for a body of too many nodes.
         """
         made = self._made.result() if self._made.done() else None
-        if not isinstance(made, _OnOwnNodes):
+        if made is None or made.firm is None:
             return LINEAR
         unit = [FingerLoad(load.nodes, load.forces / young_modulus, load.sticks) for load in loads]
         with self._pressing:
             # What is drawn and what is felt are asked for one after the other.
             if self._last is None or not alike(self._last[0], unit):
-                self._last = unit, made.pressed(unit)
+                self._last = unit, made.firm.on_surface(unit)
             return self._last[1]
 
     def wait_for(self, nodes: NDArray[np.int64]) -> None:  # noqa: ARG002 - of no single place
@@ -135,17 +137,20 @@ class RotationStrainShape:
         """Stage by stage, between which :meth:`close` is heeded."""
         if self._plan.lattice_nodes:
             levels = TwoLevels.of(self._body, self._plan.lattice_nodes)
-            return None if self._is_ended else _OnLattice(self._body, levels, self._plan.steps)
+            if len(self._body.mesh.nodes) - len(self._body.fixed) > MOST_FELT:
+                return None if self._is_ended else _OnLattice(self._body, levels, self._plan.steps)
         solid = FreeSolid.of(self._body)
         if self._goes_on(0.2):
             _ = solid.factor
-        if self._goes_on(0.6):
-            relaxing = relaxation(solid)
-            firm = FirmBody(solid, relaxing.another())
-            made = _OnOwnNodes(solid, relaxing, self._plan.steps, firm)
-            if not self._is_ended:
-                return made
-        return None
+        if not self._goes_on(0.6):
+            return None
+        relaxing = relaxation(solid)
+        firm = FirmBody(solid, relaxing.another())
+        if self._is_ended:
+            return None
+        if self._plan.lattice_nodes:
+            return _OnLattice(self._body, levels, self._plan.steps, firm)
+        return _OnOwnNodes(solid, relaxing, self._plan.steps, firm)
 
     def _goes_on(self, share: float) -> bool:
         if not self._is_ended:
@@ -154,6 +159,11 @@ class RotationStrainShape:
 
 
 class _Made(Protocol):
+    @property
+    def firm(self) -> FirmBody | None:
+        """What tells the force."""
+        ...
+
     def displacements(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
     ) -> NDArray[np.float64]:
@@ -174,18 +184,13 @@ class _OnOwnNodes:
         held = self.solid.on_free_nodes(nodes, forces)
         return self.relaxation.relaxed(held, self.steps)[self.solid.surface]
 
-    def pressed(self, loads: Sequence[FingerLoad]) -> Pressed:
-        found = self.firm.pressed(loads)
-        if found.displacements is None:
-            return found
-        return replace(found, displacements=found.displacements[self.solid.surface])
-
 
 @dataclass(frozen=True, eq=False)
 class _OnLattice:
     body: SoftBody
     levels: TwoLevels
     steps: int
+    firm: FirmBody | None = None
 
     def displacements(
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]

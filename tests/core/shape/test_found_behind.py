@@ -8,6 +8,10 @@ from bodies.soft_block import block_mesh
 from palpate.core.shape.felt import held_loads
 from palpate.core.shape.found_behind import FoundBehind
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad
+from palpate.core.shape.rotation_strain.rotation_strain_shape import (
+    FramePlan,
+    RotationStrainShape,
+)
 from palpate.core.shape.shapes import firmness_of, pressed_by, shape
 
 MODULUS = 5_000.0
@@ -76,6 +80,16 @@ def test_no_force_moves_nothing_and_nothing_is_looked_for(bar, behind):
             assert not found.displacements.any()
             assert found.share == 1.0
     assert not behind.news
+
+
+def test_a_body_that_is_drawn_on_a_lattice_is_felt_on_its_own_nodes(bar, behind):
+    loads, large = bent(bar), RotationStrainShape(bar, FramePlan(2, 60))
+    for made in (large, behind.shape):
+        made.wait_for(loads[0].nodes)
+    own, its = (pressed_by(one, loads, MODULUS) for one in (behind.shape, large))
+    assert its.firmness == own.firmness
+    np.testing.assert_array_equal(its.displacements, own.displacements)
+    large.close()
 
 
 def joined(loads):
