@@ -30,9 +30,11 @@ def dent(thing):
 
 
 def played(thing):
-    """The path of the file that an object plays, as it is stored."""
+    """The path of the file that an object plays, as it is stored, which each system reads in its
+    own way of writing.
+    """
     modifier = thing.modifiers["Palpate Animation"]
-    return getattr(modifier, "cache_file", modifier).filepath
+    return getattr(modifier, "cache_file", modifier).filepath.replace("\\", "/")
 
 
 def is_temporary(thing):
