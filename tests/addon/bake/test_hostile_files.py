@@ -89,10 +89,10 @@ def test_press_heals_a_hostile_name_by_one_of_its_own(saved, tmp_path):
 
 
 @pytest.mark.parametrize("to", [".ssh/id_rsa", "letter.odt", "nowhere"])
-def test_links_are_not_followed(saved, tmp_path, to):
+def test_links_are_not_followed(saved, tmp_path, link, to):
     path, before = locate(saved), outside(tmp_path)
     path.unlink()
-    path.symlink_to(tmp_path / "home" / to)
+    link(path, tmp_path / "home" / to)
     assert locate(saved) is None
     press_down(saved)
     assert locate(saved) == path.with_name(path.name.replace("-", "_2-"))
@@ -103,18 +103,18 @@ def test_links_are_not_followed(saved, tmp_path, to):
     assert outside(tmp_path) == before
 
 
-def test_a_link_beside_a_new_place_is_not_written_through(saved, tmp_path):
+def test_a_link_beside_a_new_place_is_not_written_through(saved, tmp_path, link):
     other = tmp_path / "other"
     (other / "palpate").mkdir(parents=True)
-    (other / "palpate" / locate(saved).name).symlink_to(tmp_path / "home" / "new.desktop")
+    link(other / "palpate" / locate(saved).name, tmp_path / "home" / "new.desktop")
     bpy.ops.wm.save_as_mainfile(filepath=str(other / "copy.blend"))
     assert not (tmp_path / "home" / "new.desktop").exists()
 
 
-def test_a_folder_that_leads_elsewhere_is_neither_read_nor_written(saved, tmp_path, capsys):
+def test_a_folder_that_leads_elsewhere_is_neither_read_nor_written(saved, tmp_path, link):
     folder = locate(saved).parent
     shutil.rmtree(folder)
-    folder.symlink_to(tmp_path / "home")
+    link(folder, tmp_path / "home")
     before = outside(tmp_path)
     assert locate(saved) is None
     assert "another place" in error_of(bpy.ops.palpate.press, by=(0.0, 0.0, -0.005))
