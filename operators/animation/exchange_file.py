@@ -101,7 +101,7 @@ def _close(thing: bpy.types.Object) -> None:
         # Its own count has one too many from the operator that opened it.
         if played is not None and not bpy.data.user_map(subset={played})[played]:
             bpy.data.batch_remove([played])
-        # What was evaluated has it open, too, until there is something newer; Windows asks for that.
+        # What was evaluated has it open, too, until there is something newer: Windows would mind.
         bpy.context.view_layer.update()
 
 
