@@ -10,6 +10,7 @@ from typing import Protocol
 import bpy
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from ...core.contact.press import ContactSettings, Press
 from ...core.contact.touches import Touch
@@ -152,11 +153,20 @@ def imprinted(
 def same_tools(found: Sequence[Presser], before: Sequence[Presser]) -> bool:
     """Whether pressers have the shapes that they had before."""
     return len(found) == len(before) and all(
-        one.tool.core.shape == other.tool.core.shape
         # Matrices are float32, so a tool that turns is never quite the same.
-        and np.allclose(one.tool.core, other.tool.core, rtol=0.0, atol=SAME * one.tool.radius)
+        _same_places(one.tool.core, other.tool.core, SAME * one.tool.radius)
         and np.isclose(one.tool.radius, other.tool.radius, rtol=SAME)
         for one, other in zip(found, before, strict=True)
+    )
+
+
+def _same_places(one: NDArray[np.float64], other: NDArray[np.float64], tolerance: float) -> bool:
+    """Whether places (n, 3) are others (m, 3), in whatever order: that of a hull's corners changes
+    with a rounding.
+    """
+    return all(
+        np.max(cKDTree(these).query(those)[0]) <= tolerance
+        for these, those in ((one, other), (other, one))
     )
 
 
