@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import os
-import shutil
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 MODULE = "bl_ext.user_default.palpate"
+MESHES = Path(__file__).resolve().parents[1] / "meshes"
 # Few tetrahedra: a bake takes about a second, most of it the child process.
 COARSE = 0.2
 # The middle of a soft cube's top, and a place 5 mm inside.
 TOP, DEEP = (0.0, 0.0, 0.02501), (0.0, 0.0, 0.02)
 BESIDE, DEPTH = (0.002, 0.001, 0.02501), 0.004
+_bodies: dict[tuple[float, str], Any] = {}
 
 
 def part(name: str) -> ModuleType:
@@ -57,34 +57,35 @@ def mesh_object(vertices: Any, faces: Any, name: str = "Thing") -> bpy.types.Obj
 
 
 def soft_cube(edge: float = 0.05, pins: str = "BELOW") -> bpy.types.Object:
-    """A cube with its body: baked the first time, the same body again afterwards."""
-    thing = cube(edge)
+    """A cube with the body of stored tetrahedra, as Make Soft leaves it: the same in every run,
+    which those of fTetWild are not.
+    """
+    thing, scene = cube(edge), bpy.context.scene
     # Of which the figures of tests are, as of objects from before Real was what Make Soft chooses.
     thing.palpate.shape = "LINEAR"
     if pins != "BELOW":
         thing.palpate.pin_mode = pins
-    kept = Path(os.environ["BLENDER_USER_RESOURCES"]) / f"cube-{edge}-{pins}.npz"
-    if kept.is_file():
-        _give_body(thing, kept)
-    else:
-        assert bpy.ops.palpate.make_soft() == {"FINISHED"}
-        shutil.copyfile(part("operators.object.body_store").locate(thing), kept)
-    return thing
-
-
-def _give_body(thing: bpy.types.Object, kept: Path) -> None:
-    """What Make Soft leaves on an object and beside it, without its bake."""
-    store, scene = part("operators.object.body_store"), bpy.context.scene
-    body = part("core.body.body_file").load(kept)
-    file = store.place_for(thing, body.key)
-    file.parent.mkdir(exist_ok=True)
-    shutil.copyfile(kept, file)
     drawn = part("operators.scene.drawn_surface").read(thing, scene)
-    pins = part("operators.pins.pin_group").pin_rule(thing)
-    fingerprint = drawn.fingerprint(pins, part("operators.pins.stiff_region").stiff_rule(thing))
+    if (edge, pins) not in _bodies:
+        settings = part("operators.bake.bake_prediction").all_settings_of(thing, drawn)
+        _bodies[edge, pins] = _baked(edge, settings, drawn.surface())
+    body = _bodies[edge, pins]
+    file = part("operators.object.body_store").place_for(thing, body.key)
+    file.parent.mkdir(exist_ok=True)
+    part("core.body.body_file").save(body, file)
+    rule = part("operators.pins.pin_group").pin_rule(thing)
+    fingerprint = drawn.fingerprint(rule, part("operators.pins.stiff_region").stiff_rule(thing))
     part("operators.object.baked_record").record(thing, body, file.name, fingerprint)
     thing.palpate.baked_edge_length = thing.palpate.edge_length
     thing.palpate.baked_epsilon = thing.palpate.epsilon
+    return thing
+
+
+def _baked(edge: float, settings: Any, surface: Any) -> Any:
+    """The body of a cube of this edge at the origin, with settings of a bake."""
+    with np.load(MESHES / "cube-500.npz") as stored:
+        mesh = part("core.mesh.tet_mesh").TetMesh.checked(edge * stored["X"], stored["T"])
+    return part("core.bake.steps").bake(mesh, settings, surface=surface)[0]
 
 
 def press_down(thing: bpy.types.Object, top: float = 0.025, depth: float = 0.005) -> None:

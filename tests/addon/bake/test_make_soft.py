@@ -21,12 +21,12 @@ from soft_scene import (
     part,
     press_down,
     select,
-    soft_cube,
 )
 
 
 def test_a_cube_gets_a_body_of_its_own_size_pinned_at_the_bottom(palpate):
-    thing = soft_cube(0.05)
+    thing = cube(0.05)
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
     body = body_of(thing)
     assert np.allclose(np.ptp(body.mesh.nodes, axis=0), 0.05, rtol=0.02)
     assert len(body.fixed) > 0
