@@ -105,6 +105,7 @@ def test_lines_say_what_became_of_each(meshes, palpate):
     assert printed.startswith(f"cube.npz -> {place}  125 nodes, 73 free on the surface, ")
 
 
+@pytest.mark.at_length
 def test_a_cluster_bakes_as_this_computer_does(meshes, palpate, two_workers):
     words = ["--output-folder", "bodies", "--scheduler", two_workers, "--json"]
     assert_two_of_three_became_bodies(*palpate("bake", *meshes, *words))

@@ -24,6 +24,7 @@ def boned_cube(factor=1000.0):
     return select(thing)
 
 
+@pytest.mark.at_length
 def test_automatic_takes_the_formulation_that_fits_the_material(palpate, thing):
     assert thing.palpate.baked_formulation == "linear"
     thing.palpate.poisson_ratio = 0.49

@@ -44,9 +44,8 @@ def test_a_dent_among_the_widest_faces_of_a_flat_mesh_is_fine(ball):
     assert longest_edge(ball.palpate.carrier.data) < 0.3 * RADIUS
 
 
-@pytest.mark.parametrize(
-    "act", ["convert_layers", pytest.param("apply_layers", marks=pytest.mark.at_length)]
-)
+@pytest.mark.at_length
+@pytest.mark.parametrize("act", ["convert_layers", "apply_layers"])
 def test_what_a_mesh_can_show_of_its_finer_dents_goes_into_it(ball, act):
     assert bpy.ops.palpate.stroke(**SOUTH) == {"FINISHED"}
     own = rest_places(ball) + moved(ball, "Press 1")[: len(ball.data.vertices)]

@@ -187,6 +187,7 @@ def test_a_surface_has_a_share_before_there_are_tetrahedra(ball):
     assert heard.shares[-1] == 1.0
 
 
+@pytest.mark.at_length
 def test_the_bar_moves_while_tetrahedra_are_made(ball):
     """What a window shows of a child process, looked at ten times a second."""
     shares = []

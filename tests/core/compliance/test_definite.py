@@ -47,7 +47,7 @@ def test_compressed_ones_pass(mouse, tolerance):
     "place",
     [0.0, 0.5, 1.0, *(pytest.param(one, marks=pytest.mark.at_length) for one in (0.1, 0.9, 0.99))],
 )
-@pytest.mark.parametrize("share", [-0.01, -0.1, -1.0])
+@pytest.mark.parametrize("share", [-0.01, -0.1, pytest.param(-1.0, marks=pytest.mark.at_length)])
 def test_a_hidden_negative_eigenvalue_is_found(
     mouse, spectrum, monkeypatch, place, share, together
 ):

@@ -107,12 +107,12 @@ def test_in_and_out_gives_nothing(whole, firmness, ticks):
     [
         pytest.param(FIRMER, None, None, id="point"),
         pytest.param(SOFTER, None, COUPLED, id="softer, point, motors"),
-        pytest.param(FIRMER, sphere(0.006), COUPLED, id="sphere, motors"),
         *(
             pytest.param(*one, marks=pytest.mark.at_length)
             for one in (
                 (SOFTER, None, None),
                 (FIRMER, None, COUPLED),
+                (FIRMER, sphere(0.006), COUPLED),
                 (SOFTER, sphere(0.006), COUPLED),
                 (FIRMER, sphere(0.006), None),
                 (SOFTER, sphere(0.006), None),

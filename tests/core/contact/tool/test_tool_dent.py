@@ -72,7 +72,13 @@ def test_a_tool_that_feels_nothing_moves_nothing():
     np.testing.assert_array_equal(kept_out(places, up, on_plane(DEPTH, np.zeros(3))), places)
 
 
-@pytest.mark.parametrize("tool", [sphere(RADIUS), plate(0.016, 0.016)], ids=["sphere", "plate"])
+@pytest.mark.parametrize(
+    "tool",
+    [
+        pytest.param(sphere(RADIUS), id="sphere"),
+        pytest.param(plate(0.016, 0.016), id="plate", marks=pytest.mark.at_length),
+    ],
+)
 def test_a_coarse_body_is_drawn_outside_the_tool(mouse, tool):
     points = contact_points(mouse, 0.001)
     middle = mouse.mesh.nodes.mean(axis=0)
