@@ -70,6 +70,7 @@ def every_kind_of_stroke_is_kept_and_escape_restores(stage: Stage) -> Wait:
         cube = bpy.data.objects["Cube"]
 
 
+@at_length
 def a_drag_beside_the_object_selects_and_moves_nothing(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
@@ -155,6 +156,7 @@ def shortcuts_stand_in_the_preferences(stage: Stage) -> Wait:
     assert {"palpate.stroke", "palpate.stroke_size", "wm.tool_set_by_id"} <= keyed
 
 
+@at_length
 def a_depth_is_typed_while_dragging(stage: Stage) -> Wait:
     cube = yield from _soft_default_cube(stage)
     _choose_tool(stage)
