@@ -100,9 +100,10 @@ def test_a_table_file_that_is_no_good_is_told_once_and_made_anew(sessions, state
 
 
 @pytest.mark.at_length
-def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monkeypatch, thing):
-    thing.palpate.shape = "TABLE"
-    file = table_file(thing, "newton-table")
+def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(
+    palpate, monkeypatch, thing, table
+):
+    thing.palpate.shape, file = "TABLE", table
     # That of the test before may still hold something else.
     file.unlink(missing_ok=True)
     once = part("operators.press.press_once").press_once
@@ -121,8 +122,16 @@ def test_a_table_that_cannot_be_used_is_a_warning_of_the_operator(palpate, monke
     assert file.read_bytes() == b"nothing"
 
 
-def test_a_trouble_is_told_once(sessions, states, thing):
+@pytest.fixture
+def table(thing):
+    """Place of a table of a body that other tests have too, so nothing is left there."""
     file = table_file(thing, "newton-table")
+    yield file
+    file.unlink(missing_ok=True)
+
+
+def test_a_trouble_is_told_once(sessions, states, thing, table):
+    file = table
     file.write_bytes(b"nothing")
     thing.palpate.shape = "TABLE"
     session = begin_pressed(sessions, states, thing)

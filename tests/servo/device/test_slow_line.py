@@ -4,6 +4,15 @@ import pytest
 from slow_press import STEP, TICK, press
 
 BAUDS = [9_600, 19_200, 57_600, 115_200, 250_000, 1_000_000]
+SLOW, FAST = 115_200, 1_000_000
+LINES = [
+    (SLOW, 1000),
+    (FAST, 100),
+    *(
+        pytest.param(*line, marks=pytest.mark.at_length)
+        for line in ((SLOW, 100), (SLOW, 400), (FAST, 400), (FAST, 1000))
+    ),
+]
 
 
 @pytest.mark.parametrize("protocol", [1, 2])
@@ -18,8 +27,7 @@ def test_a_force_waits_for_at_most_a_tick(baud, rate_hz, protocol):
     assert bool(found.seen & {"stale", "deaf"}) is too_slow
 
 
-@pytest.mark.parametrize("rate_hz", [100, pytest.param(400, marks=pytest.mark.at_length), 1000])
-@pytest.mark.parametrize("baud", [115_200, 1_000_000])
+@pytest.mark.parametrize(("baud", "rate_hz"), LINES)
 def test_a_device_that_reads_nothing_for_three_seconds_is_handed_no_old_force(baud, rate_hz):
     found = press(baud, rate_hz, seconds=5.5, reads_not=(1.5, 4.5))
     # Since the first FORCE that was not taken, in answer to the next STATE.
@@ -29,8 +37,7 @@ def test_a_device_that_reads_nothing_for_three_seconds_is_handed_no_old_force(ba
     assert found.largest_in_silence == 0.0
 
 
-@pytest.mark.parametrize("rate_hz", [100, pytest.param(400, marks=pytest.mark.at_length), 1000])
-@pytest.mark.parametrize("baud", [115_200, 1_000_000])
+@pytest.mark.parametrize(("baud", "rate_hz"), LINES)
 def test_an_older_device_says_that_it_heard_nothing_and_zero_is_the_last_that_waits(baud, rate_hz):
     found = press(baud, rate_hz, 1, seconds=5.5, reads_not=(1.5, 4.5))
     # Its watchdog, the way of its FAULT behind a STATE, and a tick.
