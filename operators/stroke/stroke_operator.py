@@ -88,7 +88,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             self._keep(scene, thing, asked, stroked)
             if asked is not wanted:
                 self.tell(asked, self._frame, self._touched.turn)
-                self.report({"WARNING"}, shown(stroke_words.ENDS))
+                self.report({"WARNING"}, shown(self._stroke.ends))
         except BaseException:
             self._give_up(thing)
             raise
@@ -222,7 +222,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         try:
             self._last = self._stroke.towards(wanted)
             if self._last[0] is not wanted:
-                problem = f"   {shown(stroke_words.ENDS)}"
+                problem = f"   {shown(self._stroke.ends)}"
         except PalpateError as refused:
             # As far as it went; back from there the stroke goes on.
             problem = f"   {shown(refused)}"

@@ -19,9 +19,6 @@ STATUS = {
     Motion.PINCH: "Drag away in any direction: Draw in     [0-9] Percent     [Esc] Restore",
 }
 
-# Of a push that would come out on the far side.
-ENDS = "The body ends here: it goes no deeper"
-
 
 def status(motion: Motion) -> str:
     """What keys and pointer do during a stroke."""

@@ -13,10 +13,10 @@ from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ...lying.free_body import FreeBody, Lying
 from ...object.drawn_body import DrawnBody
+from .deepest import MOST_SQUEEZED
 from .fingertips import Fingertips
 from .motion import Asked
 from .pushing import DEEPEST
-from .stroke import MOST_SQUEEZED
 from .thickness import Thickness
 
 Array = NDArray[np.float64]

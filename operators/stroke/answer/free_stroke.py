@@ -18,6 +18,7 @@ from ...lying.coming_down import refuse_played, show
 from ...lying.free_body import FreeBody, Lying, lie, supports_under
 from ...object.drawn_body import DrawnBody
 from ...shape.drawn_shape import found_behind
+from .deepest import ENDS
 from .free_hold import FreeHold
 from .free_push import FreePush
 from .motion import Asked, Motion
@@ -52,7 +53,7 @@ class FreeStroke:
     rested: Lying
     _before: Before
     _alone: FreeBody
-    pace, moves = PACE, True
+    pace, moves, ends = PACE, True, ENDS
 
     @classmethod
     def begin(

@@ -15,15 +15,15 @@ from ....core.shape.felt import held_loads
 from ....core.shape.found_behind import FoundBehind
 from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
+from .deepest import ENDS, Deepest
 from .motion import Asked, Motion
 from .pushing import Pushing
 from .stroked import Stroked
 from .thickness import Thickness
 
-# Share of its thickness by which a push squeezes a body at most: beyond, it would come out on the
-# far side. It is reached to within a few percent, in some steps; where a part gives way as a whole,
-# each goes on as far as the one before tells.
-MOST_SQUEEZED, ALMOST, LEAST_SQUEEZED = 0.8, 0.97, 0.05
+# The limit of a push is reached to within a few percent, in some steps; where a part gives way as a
+# whole, each goes on as far as the one before tells.
+ALMOST, LEAST_GONE = 0.97, 0.05
 MOST_STEPS = 6
 # Seconds between pictures.
 PACE = 1.0 / 30.0
@@ -64,7 +64,7 @@ class Stroke:
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
         """What a motion does, by the object's shape, waiting for that; and what was done of it,
-        where it asked to go deeper than the body is thick.
+        where it asked to go deeper than it can.
 
         Raises
         ------
@@ -93,16 +93,22 @@ class Stroke:
         if not inward or thickness is None:
             return asked, self._done(asked, inward=inward)
         # From below: what has been pushed through itself does not come back as it was.
-        done = replace(asked, amount=min(asked.amount, MOST_SQUEEZED * thickness.metres))
+        most = self._deepest(thickness).metres
+        done = replace(asked, amount=min(asked.amount, most))
         for _ in range(MOST_STEPS):
             stroked = self._done(done, inward=True)
             moved = self.drawn.node_displacements(stroked.displacements)
-            share = thickness.squeezed(done.amount, moved)
-            if done.amount == asked.amount or share >= ALMOST * MOST_SQUEEZED:
+            share = thickness.gone(done.amount, moved) / most
+            if done.amount == asked.amount or share >= ALMOST:
                 break
-            farther = done.amount * MOST_SQUEEZED / max(share, LEAST_SQUEEZED)
+            farther = done.amount / max(share, LEAST_GONE)
             done = replace(asked, amount=min(asked.amount, farther))
         return (asked if done.amount == asked.amount else done), stroked
+
+    @property
+    def ends(self) -> str:
+        """Why a push goes no deeper."""
+        return ENDS if self._thickness is None else self._deepest(self._thickness).reason
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Nothing moves an object that is pinned."""
@@ -125,6 +131,9 @@ class Stroke:
         force = float(np.linalg.norm(answer.force))
         loads = held_loads(self.drawn.body, answer.nodes, answer.forces)
         return Stroked(answer.displacements, force, answer.torque, loads=tuple(loads))
+
+    def _deepest(self, thickness: Thickness) -> Deepest:
+        return Deepest.of(thickness, self._pushing)
 
     @cached_property
     def _thickness(self) -> Thickness | None:

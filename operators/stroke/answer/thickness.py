@@ -42,9 +42,8 @@ class Thickness:
             return None
         return cls(met.distance, -grip.normal, inside_out[met.triangle], met.alpha)
 
-    def squeezed(self, depth: float, moved: Array) -> float:
-        """Share of it that is gone at a depth, metres, with displacements (N, 3) of all nodes: a
+    def gone(self, depth: float, moved: Array) -> float:
+        """Metres of it that are gone at a depth, metres, with displacements (N, 3) of all nodes: a
         part that gives way as a whole is squeezed little.
         """
-        far = float(self.alpha @ moved[self.nodes] @ self.inward)
-        return (depth - far) / self.metres
+        return depth - float(self.alpha @ moved[self.nodes] @ self.inward)

@@ -158,13 +158,31 @@ def test_nothing_is_asked_at_first_and_nothing_moves(thing):
 def test_a_push_ends_where_the_body_does(thing):
     """The cube is 5 cm high, and held by its foot: 4 cm are the most."""
     for depth in (0.04, 0.2):
-        bpy.ops.palpate.stroke(place=TOP, radius=0.02, motion="PUSH", depth=depth)
+        bpy.ops.palpate.stroke(place=TOP, radius=0.03, motion="PUSH", depth=depth)
         thing.modifiers[-1].show_viewport = False
     whole, farther = moved(thing, "Press 1"), moved(thing, "Press 2")
     assert -whole[:, 2].min() > 0.01
     assert np.allclose(farther, whole, atol=0.02 * np.abs(whole).max())
     bottom = rest_places(thing)[:, 2].min()
     assert (rest_places(thing) + farther)[:, 2].min() > bottom - 0.001
+
+
+def test_a_fingertip_is_not_swallowed(thing):
+    """It goes in by three quarters of its width, as when it presses: the cube does not lean."""
+    bpy.ops.palpate.stroke(place=TOP, radius=0.006, motion="PUSH", depth=0.03)
+    shift, top = moved(thing, "Press 1"), rest_places(thing)[:, 2] > 0.024
+    assert -shift[:, 2].min() < 1.01 * 0.009
+    assert np.abs(shift[top, :2].mean(axis=0)).max() < 0.001
+
+
+def test_a_limb_that_gives_way_as_a_whole_is_pushed_farther_than_its_fingertip(palpate):
+    """What is held by its foot bends: only what is pressed in beside that counts."""
+    bar = cube(0.02)
+    for vertex in bar.data.vertices:
+        vertex.co.z *= 6.0
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    bpy.ops.palpate.stroke(place=(0.01, 0.0, 0.055), radius=0.006, motion="PUSH", depth=0.03)
+    assert np.linalg.norm(moved(bar, "Press 1"), axis=1).max() > 0.02
 
 
 @pytest.fixture

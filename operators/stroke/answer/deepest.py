@@ -1,0 +1,35 @@
+"""How far a push goes in at most, and what is said there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...tool.finger_tip import FingerTip
+from .pushing import DEEPEST, Pushing
+from .thickness import Thickness
+
+# Share of its thickness by which a push squeezes a body at most: beyond, it would come out on the
+# far side.
+MOST_SQUEEZED = 0.8
+ENDS = "The body ends here: it goes no deeper"
+
+
+@dataclass(frozen=True)
+class Deepest:
+    """Limit of a push: ``metres`` by which the surface is pressed in at most, beside what the body
+    gives way as a whole, and the ``reason``.
+    """
+
+    metres: float
+    reason: str
+
+    @classmethod
+    def of(cls, thickness: Thickness, pushing: Pushing) -> Deepest:
+        """Limit at a place: the far side's, or a fingertip's if that is nearer, for a linear body
+        lets go of what it has swallowed, and leans aside.
+        """
+        far = cls(MOST_SQUEEZED * thickness.metres, ENDS)
+        if not pushing.reaches:
+            return far
+        tip = cls(FingerTip(pushing.fingertips.tool).deepest, DEEPEST)
+        return min(far, tip, key=lambda one: one.metres)
