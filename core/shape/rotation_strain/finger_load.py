@@ -3,48 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...contact.tool.pose import Pose
-from ...contact.tool.tools import Tool
-
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Setting:
-    """A tool where it is."""
-
-    tool: Tool
-    pose: Pose
-
-    def same(self, other: Setting) -> bool:
-        """Whether it is that tool at that place."""
-        return self.tool is other.tool and all(
-            np.array_equal(getattr(self.pose, part), getattr(other.pose, part))
-            for part in ("position", "rotation")
-        )
 
 
 @dataclass(frozen=True, eq=False)
 class FingerLoad:
     """Load of one finger by the linear force law: forces (k, 3), N, on nodes (k,) of the mesh.
 
-    ``sticks``: a point, which moves its place by all of its way; a tool's places may slide. ``by``:
-    the tool, where it is known and slides without friction.
+    ``sticks``: a point, which moves its place by all of its way; a tool's places may slide.
     """
 
     nodes: NDArray[np.int64]
     forces: Array
     sticks: bool = False
-    by: Setting | None = None
-
-    def times(self, share: float) -> FingerLoad:
-        """With so much of its forces."""
-        return replace(self, forces=share * self.forces)
 
     @property
     def weights(self) -> Array:
@@ -63,11 +39,6 @@ def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: floa
     return len(loads) == len(others) and all(
         one.sticks == other.sticks
         and np.array_equal(one.nodes, other.nodes)
-        and _same_tool(one.by, other.by)
         and np.abs(one.forces - other.forces).sum() <= share * np.abs(one.forces).sum()
         for one, other in zip(loads, others, strict=True)
     )
-
-
-def _same_tool(one: Setting | None, other: Setting | None) -> bool:
-    return one is other or (one is not None and other is not None and one.same(other))

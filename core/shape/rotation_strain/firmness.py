@@ -22,10 +22,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad
-from .kept_out import kept_out
 from .relaxation import Patterns, Relaxation, Rest
 
 Array = NDArray[np.float64]
@@ -37,8 +35,6 @@ DEPTHS, HALF = (0.25, 0.5, 0.75, 1.0), 0.5
 CLOSE, MOST_STEPS = 0.002, 200
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
-# Of the force by which it is led, what a body beside its tools is under at least.
-MET = 0.8
 # What carries less than this share of a tool's heaviest node is not led by itself.
 LIGHTEST = 1e-3
 # Bounds of what is believed.
@@ -104,7 +100,6 @@ LINEAR = Pressed(Firmness(), 0.0, None)
 class FirmBody:
     """A body whose firmness is looked for."""
 
-    body: SoftBody
     solid: FreeSolid
     relaxation: Relaxation
 
@@ -130,14 +125,6 @@ class FirmBody:
         deepest = max(known)
         told = [(depth, known[depth]) for depth in sorted({0.0, min(HALF, deepest), deepest})]
         moved = rest.displacements if rest is not None and deepest == DEPTHS[-1] else None
-        # From where it was led to, or where a linear body would be.
-        start = whole.linear if rest is None else rest.linear / deepest
-        beside = kept_out(self.body, self.solid, self.relaxation, loads, start)
-        # A touch narrower than the places is told by its nodes alone.
-        if beside is not None and beside.left <= ENOUGH:
-            felt = sum((load.forces.sum(axis=0) for load in loads), np.zeros(3))
-            if float(beside.force @ felt) >= MET * known[deepest] * float(felt @ felt):
-                moved = beside.displacements
         return Pressed(_through(told, whole.energy), whole.energy, moved)
 
     def on_surface(self, loads: Sequence[FingerLoad]) -> Pressed:
@@ -188,7 +175,6 @@ class _Press:
     work : of as much of each as leads a linear body there, J/Pa.
     energy : elastic, J/Pa.
     is_of_tools : and of no point.
-    linear : (f, 3), the linear displacements.
     """
 
     patterns: Patterns
@@ -196,7 +182,6 @@ class _Press:
     work: float
     energy: float
     is_of_tools: bool
-    linear: Array
 
     @classmethod
     def of(
@@ -229,4 +214,4 @@ class _Press:
         ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
         work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())
         is_of_tools = not any(load.sticks for load in loads)
-        return cls(made, ways, work, energy, is_of_tools, linear)
+        return cls(made, ways, work, energy, is_of_tools)

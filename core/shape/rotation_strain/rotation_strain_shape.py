@@ -111,7 +111,7 @@ class RotationStrainShape:
         made = self._made.result() if self._made.done() else None
         if made is None or made.firm is None:
             return LINEAR
-        unit = [load.times(1.0 / young_modulus) for load in loads]
+        unit = [FingerLoad(load.nodes, load.forces / young_modulus, load.sticks) for load in loads]
         with self._pressing:
             # What is drawn and what is felt are asked for one after the other.
             if self._last is None or not alike(self._last[0], unit):
@@ -145,7 +145,7 @@ class RotationStrainShape:
         if not self._goes_on(0.6):
             return None
         relaxing = relaxation(solid)
-        firm = FirmBody(self._body, solid, relaxing.another())
+        firm = FirmBody(solid, relaxing.another())
         if self._is_ended:
             return None
         if self._plan.lattice_nodes:
