@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -177,7 +177,8 @@ def _pose(entry: Entry) -> Pose:
 def _beside(entry: Entry, words: str, folder: Path) -> Path:
     """File in the scene's folder or below it: whoever sends a scene names no other."""
     remedy = "put the file beside the scene, or in a folder there, and give the way from it"
-    if "\0" in words or "\\" in words or Path(words).is_absolute():
+    # Drives and roots are read as Windows does, so that a scene is refused alike on every system.
+    if "\0" in words or "\\" in words or PureWindowsPath(words).anchor:
         raise PalpateError(f"{entry.where}: '{words[:80]!r}' is no file beside the scene; {remedy}")
     file = folder / words
     if not file.resolve().is_relative_to(folder.resolve()):
