@@ -8,13 +8,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.servo.session import FingerSnapshot
 from ...operators.scene.body_frame import BodyFrame
 from ...operators.session.press_session import PressSession
 from ...operators.session.press_state import Phase
-from ...operators.tool.tool_depth import depth_of
+from ...operators.tool.tool_depth import finger_depth
 
 Array = NDArray[np.float64]
 
@@ -106,7 +105,7 @@ def _of_point(session: PressSession, finger: FingerSnapshot, frame: BodyFrame) -
     force = _force(finger)
     return Reading(
         force=float(np.linalg.norm(force)),
-        depth=float(np.linalg.norm(probe - proxy)),
+        depth=_depth(session, finger),
         touching=True,
         probe=frame.world_from_body(probe),
         contact=frame.world_from_body(contact),
@@ -130,10 +129,9 @@ def _of_tool(
     points = _as_drawn(session, finger, np.asarray(finger.points)[carries])
     places = frame.world_from_body(points)
     outward = frame.turn_to_world(-pushes[carries] / sizes[:, None])
-    pose = Pose(np.asarray(finger.probe), rotation)
     return Reading(
         force=float(np.linalg.norm(force)),
-        depth=_depth(session, tool, pose, pushes.sum(axis=0)),
+        depth=_depth(session, finger),
         touching=True,
         probe=probe,
         contact=sizes @ places / sizes.sum(),
@@ -162,12 +160,9 @@ def _as_drawn(session: PressSession, finger: FingerSnapshot, points: Array) -> A
     return moved
 
 
-def _depth(session: PressSession, tool: Tool, pose: Pose, push: Array) -> float:
-    mesh, moved = session.drawn.body.mesh, session.seen.displacements
-    # Nothing is further in than the surface went, and the near field takes it as far as the tool.
-    farthest = 0.0 if moved is None else 1.5 * float(np.linalg.norm(moved, axis=1).max())
-    inward = push / np.linalg.norm(push)
-    return depth_of(tool, pose, inward, mesh.nodes, mesh.surface_triangles, farthest)
+def _depth(session: PressSession, finger: FingerSnapshot) -> float:
+    mesh = session.drawn.body.mesh
+    return finger_depth(mesh, session.tip.tool, finger, session.seen.displacements)
 
 
 def _force(finger: FingerSnapshot) -> Array:

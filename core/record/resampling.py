@@ -38,7 +38,7 @@ class Frames:
     ----------
     probe : float64 (n, 3), metres, body coordinates.
     force : float64 (n, 3), the contact's force on the finger, newton, body axes.
-    depth : float64 (n,), from probe to proxy, metres.
+    depth : float64 (n,), how deep the finger is in the body, metres.
     """
 
     probe: Array
@@ -46,14 +46,20 @@ class Frames:
     depth: Array
 
 
-def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) -> Frames:
+def frames_of(
+    samples: NDArray[np.void],
+    finger: int,
+    frames_per_second: float,
+    depths: Array | None = None,
+) -> Frames:
     """Resample a finger's ticks, a structured array of ``recording.DTYPE``.
 
     A Gaussian that halves the power at a third of the frame rate goes first, as a hand trembles and
     a force jumps faster than frames can tell; it has no overshoot, so nothing is deeper or stronger
     than it was. A finger that was set down elsewhere is there in the next frame, never on the
     straight way between, which may go through the body. Ticks that are missing are bridged by
-    straight lines, of a second at most.
+    straight lines, of a second at most. ``depths`` (k, 2), times of the samples, s, and metres, are
+    a tool's; without them the depth is a point's, from probe to proxy.
 
     Raises
     ------
@@ -82,7 +88,11 @@ def frames_of(samples: NDArray[np.void], finger: int, frames_per_second: float) 
     starts = _set_down(own["probe"], np.maximum(steps, step))
     wanted = np.arange(0.0, times[-1] + 0.5 / frames_per_second, 1.0 / frames_per_second)
     spread = HALF_POWER / (CUT_OFF * frames_per_second) / step
-    depth = np.linalg.norm(own["probe"] - own["proxy"], axis=1)
+    depth = (
+        np.linalg.norm(own["probe"] - own["proxy"], axis=1)
+        if depths is None
+        else np.interp(own["time"], *depths.T)
+    )
 
     def resampled(values: Array) -> Array:
         at = np.empty(len(wanted))

@@ -49,7 +49,8 @@ class PALPATE_OT_animate_recording(Pressing, bpy.types.Operator):
         first = scene.frame_current
         made, size, touched = [], drawn_surface.size_of(thing, scene), touched_part(kept.samples)
         for finger in np.unique(touched["finger"])[:2]:
-            frames = frames_of(touched, int(finger), rate)
+            depths = None if kept.depths is None else kept.depths[:, [0, 1 + finger]]
+            frames = frames_of(touched, int(finger), rate, depths)
             made.append(_probe(None if kept.in_world else thing, scene, frame, frames, size))
         # What was recorded was pressed by the finger alone.
         thing.palpate.pressers = None

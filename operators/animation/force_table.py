@@ -12,7 +12,7 @@ import numpy as np
 from ...core.contact.touches import ToolTouch, Touch
 from ...core.files.atomic_file import atomic_file
 from ..object.drawn_body import DrawnBody
-from ..tool.tool_depth import depth_of
+from ..tool.tool_depth import pressed_depth
 from .pressed_frames import PressedFrame
 
 COLUMNS = (
@@ -59,14 +59,10 @@ class FrameRows:
             self._rows.append((here.frame, seconds, number + 1, *rest))
 
     def _depth(self, finger: Touch) -> float:
-        strength = float(np.linalg.norm(finger.force))
-        if not isinstance(finger, ToolTouch) or strength == 0.0:
+        if not isinstance(finger, ToolTouch):
             return 0.0
-        mesh, inward = self.drawn.body.mesh, -finger.force / strength
-        farthest = 1.5 * float(np.linalg.norm(finger.displacements, axis=1).max())
-        return depth_of(
-            finger.tool, finger.pose, inward, mesh.nodes, mesh.surface_triangles, farthest
-        )
+        mesh = self.drawn.body.mesh
+        return pressed_depth(mesh, finger.tool, finger.pose, -finger.force, finger.displacements)
 
     def write(self, target: Path) -> None:
         """Write the table.

@@ -5,7 +5,8 @@ The servo's thread collects the ticks, so that none is missing however busy Blen
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,8 @@ BYTES_A_TICK = DTYPE.itemsize
 class Kept:
     """Recorded ticks of an ended press, structured array (n,) of ``DTYPE``, and the object that was
     pressed; None where nobody says. Places and forces are those in the body's axes, or ``in_world``
-    of one that nobody held.
+    of one that nobody held. ``depths`` (k, 1 + fingers), times, s, and metres, tell how deep a tool
+    was whenever the view looked; None of a point.
     """
 
     samples: NDArray[np.void]
@@ -31,6 +33,7 @@ class Kept:
     lost: int = 0
     pressed: ObjectHandle | None = None
     in_world: bool = False
+    depths: NDArray[np.float64] | None = None
 
 
 @dataclass(eq=False)
@@ -48,6 +51,7 @@ class Recorder:
     full: bool = False
     seconds: float = 0.0
     lost: int = 0
+    _depths: list[tuple[float, ...]] = field(default_factory=list)
     _longest: float = 0.0
     _begun_at: float = 0.0
     _stopped: bool = False
@@ -69,6 +73,7 @@ class Recorder:
             ) from problem
         self.wanted, self.full, self.seconds, self.lost = True, False, 0.0, 0
         self._longest, self._begun_at, self._stopped = longest, now, False
+        self._depths.clear()
 
     def stop(self) -> None:
         """Stop recording and keep it."""
@@ -84,6 +89,11 @@ class Recorder:
         # The limit is reached.
         self.full = not self.servo.is_recording
 
+    def note_depths(self, now: float, depths: Iterable[float]) -> None:
+        """Keep how deep the tools are, metres, which no tick tells: it takes the rest surface."""
+        if self.going_on:
+            self._depths.append((now, *depths))
+
     @property
     def going_on(self) -> bool:
         """Whether a recording is running."""
@@ -92,7 +102,8 @@ class Recorder:
     def kept(self) -> Kept:
         """All ticks so far, a copy."""
         lost = self.servo.recording_lost
-        return Kept(self.servo.recording(), self.rate_hz, lost, self.pressed, self.in_world)
+        ticks, depths = self.servo.recording(), np.array(self._depths) if self._depths else None
+        return Kept(ticks, self.rate_hz, lost, self.pressed, self.in_world, depths)
 
 
 _last: Kept | None = None

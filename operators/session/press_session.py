@@ -21,8 +21,10 @@ from ..device import servo_words
 from ..layer import live_layer, place_marks
 from ..lying.pressed_prop import PressedProp
 from ..object.drawn_body import open_body
+from ..record.recording import Recorder
 from ..scene.object_handle import ObjectHandle
 from ..tool.finger_tip import FingerTip, chosen_tip
+from ..tool.tool_depth import finger_depth
 from .finger_leads import BOTH_POINTER, Lead, leads_of
 from .force_loop import ForceLoop
 from .led_loop import homes_of, lead_fingers, present_settings, record, start_loop
@@ -102,6 +104,7 @@ class PressSession(PressedObject):
         self._report_problems(loop)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
             loop.firm(snapshot, self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus))
+        self._note_depths(loop.recorder, snapshot)
         return moved
 
     def switch_force(self) -> None:
@@ -218,6 +221,12 @@ class PressSession(PressedObject):
         texts = [text for text in dict.fromkeys(found) if text]
         self.said += [Say(text, warning=True) for text in texts if text not in self._reported]
         self._reported, self._problems = frozenset(texts), []
+
+    def _note_depths(self, recorder: Recorder, snapshot: Snapshot) -> None:
+        tool, mesh, moved = self.tip.tool, self.drawn.body.mesh, self.seen.displacements
+        if tool is not None and recorder.going_on:
+            depths = [finger_depth(mesh, tool, finger, moved) for finger in snapshot.fingers]
+            recorder.note_depths(snapshot.time, depths)
 
     def _watch_faults(self, snapshot: Snapshot) -> None:
         if snapshot.fault:

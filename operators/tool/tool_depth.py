@@ -1,4 +1,6 @@
-"""Depth of a tool in a body: how far it is beyond where it would touch the rest surface."""
+"""Depth of a finger in a body: of a tool, how far it is beyond where it would touch the rest
+surface; of a point, from the surface at rest to the finger.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +9,44 @@ from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
+from ...core.mesh.tet_mesh import TetMesh
+from ...core.servo.session import FingerSnapshot
 from ..scene import ray
 
 Array = NDArray[np.float64]
 
 # Share of a tool's reach within which places of it are equally deep.
 FLAT = 1e-3
+# Nothing is further in than the surface went, times this: the near field takes it as far as the
+# tool.
+FARTHEST = 1.5
+
+
+def finger_depth(
+    mesh: TetMesh, tool: Tool | None, finger: FingerSnapshot, moved: Array | None
+) -> float:
+    """Depth of a finger of the servo, a point's without a ``tool``, metres; 0 while it is free.
+    ``moved`` as for :func:`pressed_depth`.
+    """
+    if not finger.touching:
+        return 0.0
+    if tool is None:
+        return float(np.linalg.norm(np.asarray(finger.probe) - np.asarray(finger.proxy)))
+    pose = Pose(np.asarray(finger.probe), np.asarray(finger.orientation))
+    return pressed_depth(mesh, tool, pose, np.asarray(finger.point_forces).sum(axis=0), moved)
+
+
+def pressed_depth(mesh: TetMesh, tool: Tool, pose: Pose, push: Array, moved: Array | None) -> float:
+    """Depth of a tool along its ``push`` (3,), the force on the body, newton; metres, 0 without
+    one. ``moved`` are displacements (n, 3), metres, whose largest says how far in it may be; None
+    of a body at rest.
+    """
+    strength = float(np.linalg.norm(push))
+    if strength == 0.0:
+        return 0.0
+    farthest = 0.0 if moved is None else FARTHEST * float(np.linalg.norm(moved, axis=1).max())
+    inward = push / strength
+    return depth_of(tool, pose, inward, mesh.nodes, mesh.surface_triangles, farthest)
 
 
 def depth_of(

@@ -7,9 +7,10 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from soft_scene import begin, error_of, part, select, soft_cube
+from soft_scene import begin, error_of, part, select, soft_cube, wait
 
 RATE = 1000
+RADIUS, SUNK = 0.008, 0.003
 
 
 @pytest.fixture
@@ -93,6 +94,32 @@ def test_the_recorded_finger_leads_and_not_the_pressers(tap):
     np.testing.assert_allclose(
         presser.place, scene.palpate.source_empty.matrix_world.translation, atol=1e-6
     )
+
+
+def test_a_fingertip_is_as_deep_as_it_went_beyond_the_surface(sessions, states):
+    """A ball's depth below a flat top is known: its lowest place below the rest height."""
+    thing, scene = soft_cube(), bpy.context.scene
+    chosen = scene.palpate
+    chosen.tip, chosen.tip_radius, chosen.own_sizes = "SPHERE", RADIUS, True
+    chosen.record_from_start = True
+    session = begin(sessions, states, thing)
+    above = 0.025 + RADIUS
+    for height in (above + 0.001, above - SUNK):
+        post = states.SetDown if height > above else states.Move
+        session.post(post((0.003, 0.001, height)))
+        wait(session, lambda height=height: abs(session.snapshot.probe[2] - height) < 1e-6)
+    shown = part("addon.overlay.reading").reading(session).depth
+    assert shown == pytest.approx(SUNK, abs=2e-5)
+    since = session.snapshot.time
+    wait(session, lambda: session.snapshot.time > since + 0.5)
+    session.post(states.Moment.CANCEL)
+    assert bpy.ops.palpate.animate_recording() == {"FINISHED"}
+    depths = []
+    for frame in range(scene.frame_current, scene.frame_end + 1):
+        scene.frame_set(frame)
+        depths.append(chosen.source_empty["depth_m"])
+    assert max(depths) == pytest.approx(SUNK, abs=2e-5)
+    assert depths[0] < 0.5 * SUNK
 
 
 def _pressers(thing):

@@ -57,6 +57,14 @@ def test_a_tap_is_never_deeper_than_it_was():
     assert tap.depth.max() == pytest.approx(0.01, rel=0.01)
 
 
+def test_a_tools_depth_is_what_was_measured_meanwhile():
+    looks = np.array([[5.0, 0.0], [5.9, 0.0], [6.1, 0.004], [9.0, 0.004]])
+    depth = frames_of(ticks(2.0, wave(1.0)), 0, FPS, looks).depth
+    np.testing.assert_allclose(depth[: FPS - 6], 0.0, atol=1e-6)
+    assert depth[FPS] == pytest.approx(0.002, rel=1e-3)
+    np.testing.assert_allclose(depth[FPS + 6 :], 0.004, rtol=1e-3)
+
+
 def test_missing_ticks_are_bridged_and_fingers_kept_apart():
     whole = ticks(1.0, lambda t: 0.01 * t)
     torn = np.delete(whole, slice(300, 500))
