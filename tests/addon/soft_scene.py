@@ -20,7 +20,7 @@ COARSE = 0.2
 # The middle of a soft cube's top, and a place 5 mm inside.
 TOP, DEEP = (0.0, 0.0, 0.02501), (0.0, 0.0, 0.02)
 BESIDE, DEPTH = (0.002, 0.001, 0.02501), 0.004
-_bodies: dict[tuple[float, str], Any] = {}
+_bodies: dict[tuple[tuple[float, float, float], str], Any] = {}
 
 
 def part(name: str) -> ModuleType:
@@ -60,16 +60,22 @@ def soft_cube(edge: float = 0.05, pins: str = "BELOW") -> bpy.types.Object:
     """A cube with the body of stored tetrahedra, as Make Soft leaves it: the same in every run,
     which those of fTetWild are not.
     """
-    thing, scene = cube(edge), bpy.context.scene
+    thing = cube(edge)
     # Of which the figures of tests are, as of objects from before Real was what Make Soft chooses.
     thing.palpate.shape = "LINEAR"
     if pins != "BELOW":
         thing.palpate.pin_mode = pins
-    drawn = part("operators.scene.drawn_surface").read(thing, scene)
-    if (edge, pins) not in _bodies:
+    soften(thing, (edge, edge, edge), pins)
+    return thing
+
+
+def soften(thing: bpy.types.Object, edges: tuple[float, float, float], pins: str) -> None:
+    """Give a box at the origin, ``edges`` long, the body of the stored cube stretched so."""
+    drawn = part("operators.scene.drawn_surface").read(thing, bpy.context.scene)
+    if (edges, pins) not in _bodies:
         settings = part("operators.bake.bake_prediction").all_settings_of(thing, drawn)
-        _bodies[edge, pins] = _baked(edge, settings, drawn.surface())
-    body = _bodies[edge, pins]
+        _bodies[edges, pins] = _baked(edges, settings, drawn.surface())
+    body = _bodies[edges, pins]
     file = part("operators.object.body_store").place_for(thing, body.key)
     file.parent.mkdir(exist_ok=True)
     part("core.body.body_file").save(body, file)
@@ -78,13 +84,14 @@ def soft_cube(edge: float = 0.05, pins: str = "BELOW") -> bpy.types.Object:
     part("operators.object.baked_record").record(thing, body, file.name, fingerprint)
     thing.palpate.baked_edge_length = thing.palpate.edge_length
     thing.palpate.baked_epsilon = thing.palpate.epsilon
-    return thing
 
 
-def _baked(edge: float, settings: Any, surface: Any) -> Any:
-    """The body of a cube of this edge at the origin, with settings of a bake."""
+def _baked(edges: tuple[float, float, float], settings: Any, surface: Any) -> Any:
+    """The body of a box with these edges at the origin, with settings of a bake."""
     with np.load(MESHES / "cube-500.npz") as stored:
-        mesh = part("core.mesh.tet_mesh").TetMesh.checked(edge * stored["X"], stored["T"])
+        mesh = part("core.mesh.tet_mesh").TetMesh.checked(
+            np.array(edges) * stored["X"], stored["T"]
+        )
     return part("core.bake.steps").bake(mesh, settings, surface=surface)[0]
 
 

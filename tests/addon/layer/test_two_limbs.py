@@ -19,6 +19,7 @@ from soft_scene import (
     part,
     rest_places,
     select,
+    soften,
     unbraked,
     wait,
 )
@@ -75,7 +76,7 @@ def bar(palpate):
             )
     thing.modifiers.new("Pose", "ARMATURE").object = armature
     select(thing)
-    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    soften(thing, (2 * LONG, 2 * WIDE, 2 * WIDE), "CORE")
     # It is where it stays at once; what is seen of others comes there from picture to picture.
     thing.palpate.shape = "LINEAR"
     return thing
