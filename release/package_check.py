@@ -18,6 +18,7 @@ NEEDED = (
     "scipy",
     "pytetwild",
     "fast_simplification",
+    "coacd",
     "psutil",
     "pyserial",
     "threadpoolctl",

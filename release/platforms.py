@@ -56,7 +56,7 @@ PLATFORMS = {
             systems=("win",),
             machines=("_arm64",),
             wheel_tags=("win_arm64",),
-            without=frozenset({"pytetwild", "fast-simplification"}),
+            without=frozenset({"pytetwild", "fast-simplification", "coacd"}),
         ),
         # Of scipy the wheels for older systems, with OpenBLAS: those for macOS 14 and later use
         # Accelerate, whose threads cannot be set. pytetwild's is tagged macOS 15, which Blender
@@ -72,6 +72,7 @@ PLATFORMS = {
             systems=("macosx",),
             machines=("_x86_64", "_universal2"),
             wheel_tags=("macosx_15_0_x86_64", "macosx_10_15_x86_64"),
+            without=frozenset({"coacd"}),
         ),
     )
 }

@@ -31,7 +31,7 @@ class RestProperties:
     )
     colliders: chosen_collection(
         "Colliders",
-        "Objects of this collection bear the object: flat ones, boxes, any convex mesh, which may "
+        "Objects of this collection bear the object: flat ones, boxes, any closed mesh, which may "
         "be animated, and soft ones, which give way when it settles",
     )
     rest_friction: number(

@@ -16,7 +16,7 @@ from ...core.rest.support import Floor, Support
 from ..object.drawn_body import DrawnBody
 from ..place.evaluation import evaluated
 from ..scene.drawn_surface import frame_of, metres_per_unit
-from .collider_tool import collider_tool
+from .collider_tool import collider_tools
 from .laid import found_floor
 from .placement import placement_of
 
@@ -73,7 +73,7 @@ def supports_of(
         if one == thing or one in (besides or ()):
             continue
         pose = placement_of(frame_of(evaluated(one, graph), graph.scene))
-        found.append(Support(collider_tool(one, graph), pose, friction))
+        found.extend(Support(tool, pose, friction) for tool in collider_tools(one, graph))
     if not found and besides is None:
         raise PalpateError(
             "{name}: there is nothing under it; choose a floor or colliders under Rests On",

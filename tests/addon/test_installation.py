@@ -11,7 +11,7 @@ import bpy
 import pytest
 
 MODULE = "bl_ext.user_default.palpate"
-BUNDLED = ["scipy", "pytetwild", "fast_simplification", "serial", "palpate_servo"]
+BUNDLED = ["scipy", "pytetwild", "fast_simplification", "coacd", "serial", "palpate_servo"]
 
 
 @pytest.mark.parametrize("name", BUNDLED)

@@ -104,7 +104,7 @@ def test_friction_holds_it_on_a_slope(free_cube, board, degrees, stays):
         assert layer_names(free_cube) == []
 
 
-def test_a_flat_collider_is_a_slab_and_a_hollow_one_is_refused(free_cube, colliders):
+def test_a_flat_collider_is_a_slab_and_an_open_hollow_one_is_refused(free_cube, colliders):
     free_cube.palpate.floor = "NONE"
     free_cube.location.z = 0.03
     bpy.ops.mesh.primitive_plane_add(size=0.4)
@@ -114,11 +114,37 @@ def test_a_flat_collider_is_a_slab_and_a_hollow_one_is_refused(free_cube, collid
     assert free_cube.location.z == pytest.approx(0.025, abs=5e-4)
     bpy.ops.mesh.primitive_torus_add(location=(5.0, 0.0, 0.0))
     torus = bpy.context.object
+    torus.data.update()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    torus.data.polygons[0].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="FACE")
+    bpy.ops.object.mode_set(mode="OBJECT")
     colliders.objects.link(torus)
     select(free_cube)
     message = error_of(bpy.ops.palpate.settle)
     assert torus.name in message
-    assert "convex parts" in message
+    assert "Solidify" in message
+
+
+def test_a_hollow_collider_bears_within_its_hollow(free_cube, colliders):
+    """A trough of one closed mesh: floor 20 mm, walls 100 mm apart and 80 mm high."""
+    outline = [(-70, 0), (70, 0), (70, 80), (50, 80), (50, 20), (-50, 20), (-50, 80), (-70, 80)]
+    corners = [(x / 1e3, y / 1e3, z / 1e3) for y in (-80, 80) for x, z in outline]
+    sides = [(k, (k + 1) % 8, (k + 1) % 8 + 8, k + 8) for k in range(8)]
+    mesh = bpy.data.meshes.new("Trough")
+    mesh.from_pydata(corners, [], [tuple(range(7, -1, -1)), tuple(range(8, 16)), *sides])
+    trough = bpy.data.objects.new("Trough", mesh)
+    bpy.context.collection.objects.link(trough)
+    colliders.objects.link(trough)
+    select(free_cube)
+    free_cube.palpate.floor = "NONE"
+    free_cube.location.z = 0.05
+    bpy.context.view_layer.update()
+    assert bpy.ops.palpate.settle() == {"FINISHED"}
+    assert free_cube.location.z == pytest.approx(0.045, abs=1e-3)
 
 
 def test_what_cannot_lie_by_itself_is_refused_with_the_remedy(free_cube, thing):
