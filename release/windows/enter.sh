@@ -11,6 +11,8 @@ mounted "$root/dev" || { mount --rbind /dev "$root/dev" && mount --make-rslave "
 # wine counts processors there.
 mounted "$root/sys" || mount -t sysfs sys "$root/sys"
 mkdir -p "$root$PWD"
+# A folder that was deleted and made anew has left a mount of the one that was.
+[ "$root$PWD" -ef "$PWD" ] || ! mounted "$root$PWD" || umount --lazy "$root$PWD"
 mounted "$root$PWD" || mount --bind "$PWD" "$root$PWD"
 microsofts=ucrtbase,vcruntime140,vcruntime140_1,msvcp140,msvcp140_1,msvcp140_2,concrt140,vcomp140
 exec chroot "$root" env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
