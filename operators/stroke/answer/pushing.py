@@ -16,7 +16,7 @@ from .fingertips import Fingertips
 from .motion import Asked
 from .stroked import Stroked
 
-DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper"
+DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper (F)"
 
 
 @dataclass(frozen=True, eq=False)
