@@ -101,9 +101,11 @@ build/packages/.made: build/servo/.built $(EXTENSION_SOURCES) | $(BPY_VENV)/.ins
 	$(BIN)/python release/build_extension.py --servo-wheel build/servo/*.whl --blender $(BPY_VENV)
 	touch $@
 
+# Systems by name, or all.
+SYSTEMS ?=
 .PHONY: package-all
 package-all: $(VENV)/.installed | $(BPY_VENV)/.installed ## the extension for every system, compiled from here; see build/packages-all
-	$(BIN)/python release/package_all.py --blender $(BPY_VENV) --output build/packages-all
+	$(BIN)/python release/package_all.py $(SYSTEMS) --blender $(BPY_VENV) --output build/packages-all
 
 # The windowed Blender may be of another Python than the official ones, and gets a package of its own.
 WINDOWED_PACKAGE := $(if $(wildcard $(BLENDER_GUI)),build/packages/palpate-windowed.zip)
@@ -218,9 +220,21 @@ test-windows-shortly: windows-root $(WINDOWS_WHEELS)/.built | build/reports ## o
 	PYTHON=$(BIN)/python release/windows/test.sh $(WINDOWS_ROOT) $(WINDOWS_WHEELS)/*.whl 313 $(WINDOWS_SHORT_TESTS) $(REPORT)
 
 .PHONY: test-windows-addon
-test-windows-addon: windows-root $(WINDOWS_PACKAGES)/.made | build/reports ## the package in Blender as a module for Windows, under wine
+test-windows-addon: test-windows-addon-$(lastword $(BLENDERS)) ## the package in Blender as a module for Windows, under wine
+
+.PHONY: $(BLENDERS:%=test-windows-addon-%)
+$(BLENDERS:%=test-windows-addon-%): test-windows-addon-%: windows-root $(WINDOWS_PACKAGES)/.made | build/reports
 	PYTHON=$(BIN)/python release/windows/test_addon.sh $(WINDOWS_ROOT) \
-	  $(WINDOWS_PACKAGES)/palpate-[0-9]*-windows_x64.zip 313 5.2.3 $(WINDOWS_ADDON_TESTS) $(REPORT)
+	  $(WINDOWS_PACKAGES)/palpate-[0-9]*-windows_x64.zip $(subst .,,$(PYTHON_OF_$*)) $* $(WINDOWS_ADDON_TESTS) $(REPORT)
+
+.PHONY: demo-windows
+demo-windows: demo-windows-$(lastword $(BLENDERS)) ## the demo in Blender for Windows, under wine; see build/demo-windows
+
+.PHONY: $(BLENDERS:%=demo-windows-%)
+$(BLENDERS:%=demo-windows-%): demo-windows-%: $(VENV)/.servo-installed windows-root $(WINDOWS_PACKAGES)/.made
+	PYTHON=$(BIN)/python $(BIN)/python demo/make_demo.py \
+	  --blender release/windows/blender_python.sh $(WINDOWS_ROOT) $(subst .,,$(PYTHON_OF_$*)) $* \
+	  --package $(WINDOWS_PACKAGES)/palpate-[0-9]*-windows_x64.zip --output build/demo-windows
 
 # Compiles without linking, for those systems whose standard library rustup has put here.
 .PHONY: check-systems

@@ -21,7 +21,7 @@ def main() -> int:
     options = _options()
     output: Path = options.output
     output.mkdir(parents=True, exist_ok=True)
-    command = [options.blender, str(HERE / "press_in_blender.py")]
+    command = [*options.blender, str(HERE / "press_in_blender.py")]
     command += ["--package", str(options.package), "--output", str(output)]
     log = output / "blender.log"
     with log.open("w", encoding="utf-8") as file:
@@ -66,7 +66,8 @@ def _report(output: Path, readme: Path | None) -> dict[str, object]:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--blender", required=True, help="a Python that has the bpy module")
+    asked = "a Python that has the bpy module, or a command that calls one"
+    parser.add_argument("--blender", required=True, nargs="+", help=asked)
     parser.add_argument("--package", type=Path, required=True, help="the extension's zip")
     parser.add_argument("--output", type=Path, default=Path("build/demo"))
     parser.add_argument("--readme", type=Path, help="also write the README's picture here")

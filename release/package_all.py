@@ -97,7 +97,7 @@ def main(arguments: list[str] | None = None) -> int:
         else:
             print(made[-1].package, flush=True)
     if made:
-        text = sums([one.package for one in made])
+        text = sums([*options.output.glob("palpate-[0-9]*.zip")])
         (options.output / "SHA256SUMS").write_text(text, encoding="utf-8")
         print(table([HEADINGS, *(one.row() for one in made)]))
     for sentence in failed:
