@@ -6,6 +6,7 @@ Wheels of others are bundled unmodified. What their makers' computers had, a use
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,13 @@ from servo_wheel.pe import SYSTEM
 # Beside Blender's python.exe or, of the C runtime, shown to it by core/machine/c_runtime.py. Not
 # the C++ runtime (msvcp140): that of Blender 4.5 and 5.0 is of 2021, too old for newer compilers.
 BLENDERS = frozenset({"python3", "python311", "python313", "vcruntime140", "vcruntime140_1"})
+
+# What Linux with glibc 2.28 has, as Debian 10 and Red Hat 8: newest versions of the symbols of its
+# C library and of gcc 8's for C++, and the libraries that wheels may ask of it (PEP 600).
+NEWEST = {"GLIBC": (2, 28), "GLIBCXX": (3, 4, 25), "CXXABI": (1, 3, 11)}
+OF_LINUX = re.compile(
+    r"(ld-linux-(x86-64|aarch64)|lib(c|m|dl|rt|util|pthread|resolv|gcc_s|stdc\+\+|z))\.so\.\d"
+)
 
 # Where Blender unpacks wheels on Windows, for a user with a long name, and what a path may hold.
 UNPACKED = (
@@ -41,7 +49,7 @@ def faults(package: Path, platform: Platform) -> list[str]:
 
 
 def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
-    """Yield what is wrong with the libraries of one wheel; those for Linux go by their tag."""
+    """Yield what is wrong with the libraries of one wheel."""
     with zipfile.ZipFile(io.BytesIO(content)) as wheel:
         images = {name: wheel.read(name) for name in wheel.namelist()}
     if platform.name.startswith("windows"):
@@ -52,6 +60,8 @@ def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
             found = _of_windows(image, names)
         elif name.endswith((".so", ".dylib")) and platform.name.startswith("macos"):
             found = _of_macos(image, names)
+        elif re.search(r"\.so(\.\d+)*$", name) and platform.name.startswith("linux"):
+            found = _of_linux(image, names)
         else:
             continue
         yield from (f"{name} {fault}" for fault in found)
@@ -68,6 +78,23 @@ def _of_windows(image: bytes, beside: frozenset[str]) -> Iterator[str]:
         stem = name.removesuffix(".dll")
         if stem not in BLENDERS and not SYSTEM.fullmatch(stem):
             yield f"asks for {name}, which neither Windows nor Blender has"
+
+
+def _of_linux(image: bytes, beside: frozenset[str]) -> Iterator[str]:
+    library: Any = lief.ELF.parse(list(image))
+    versions = {
+        version.name
+        for needed in library.symbols_version_requirement
+        for version in needed.get_auxiliary_symbols()
+    }
+    for version in sorted(versions):
+        name, _, number = version.partition("_")
+        parts = tuple(int(part) for part in number.split(".") if part.isdecimal())
+        if parts > NEWEST.get(name, parts):
+            yield f"asks for {version}, which Linux with glibc 2.28 does not have"
+    for name in sorted(library.libraries):
+        if name.lower() not in beside and not OF_LINUX.fullmatch(name):
+            yield f"asks for {name}, which not every Linux has"
 
 
 def _of_macos(image: bytes, beside: frozenset[str]) -> Iterator[str]:

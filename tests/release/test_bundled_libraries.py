@@ -11,6 +11,7 @@ import pytest
 from platforms import PLATFORMS
 
 WINDOWS, MACOS = PLATFORMS["windows-x64"], PLATFORMS["macos-arm64"]
+LINUX = PLATFORMS["linux-x64"]
 
 
 def wheel(*names):
@@ -68,6 +69,38 @@ def test_a_path_that_windows_cuts_is_told(length, count):
     content = wheel("a/" + "b" * (length - 2))
     assert len(list(bundled_libraries.of_wheel(content, WINDOWS))) == count
     assert list(bundled_libraries.of_wheel(content, MACOS)) == []
+
+
+@pytest.fixture
+def linux(monkeypatch):
+    """Every image for Linux asks for these versions and libraries."""
+
+    def asks(*versions, libraries=()):
+        needed = SimpleNamespace(get_auxiliary_symbols=lambda: named(*versions))
+        image = SimpleNamespace(symbols_version_requirement=[needed], libraries=list(libraries))
+        monkeypatch.setattr(bundled_libraries.lief.ELF, "parse", lambda _: image)
+
+    return asks
+
+
+def test_what_glibc_2_28_and_the_wheel_have_is_no_fault(linux):
+    libraries = ["libc.so.6", "libstdc++.so.6", "ld-linux-x86-64.so.2", "libgomp-1a.so.1.0.0"]
+    linux("GLIBC_2.28", "GLIBC_2.2.5", "GLIBCXX_3.4.25", "GOMP_4.5", libraries=libraries)
+    content = wheel("a/a.abi3.so", "a.libs/libgomp-1a.so.1.0.0", "a/a.so.txt")
+    assert list(bundled_libraries.of_wheel(content, LINUX)) == []
+
+
+@pytest.mark.parametrize("version", ["GLIBC_2.29", "GLIBCXX_3.4.26", "CXXABI_1.3.12"])
+def test_a_library_made_on_a_newer_linux_is_told(linux, version):
+    linux("GLIBC_2.17", version)
+    (fault,) = bundled_libraries.of_wheel(wheel("a/a.so.1"), LINUX)
+    assert version in fault
+
+
+def test_a_library_that_not_every_linux_has_is_told(linux):
+    linux(libraries=["libc.so.6", "libgomp.so.1"])
+    (fault,) = bundled_libraries.of_wheel(wheel("a/a.so"), LINUX)
+    assert "libgomp.so.1" in fault
 
 
 def test_what_macos_and_the_wheel_have_is_no_fault(macos):
