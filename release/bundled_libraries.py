@@ -22,6 +22,10 @@ from servo_wheel.pe import SYSTEM
 # the C++ runtime (msvcp140): that of Blender 4.5 and 5.0 is of 2021, too old for newer compilers.
 BLENDERS = frozenset({"python3", "python311", "python313", "vcruntime140", "vcruntime140_1"})
 
+# Microsoft's OpenMP comes with its redistributable alone, which most computers have from some other
+# program; where it is missing, hollow colliders are refused with the remedy (convex_parts.py).
+MAY_BE_MISSING = {"coacd/lib_coacd.dll": frozenset({"vcomp140"})}
+
 # What Linux with glibc 2.28 has, as Debian 10 and Red Hat 8: newest versions of the symbols of its
 # C library and of gcc 8's for C++, and the libraries that wheels may ask of it (PEP 600).
 NEWEST = {"GLIBC": (2, 28), "GLIBCXX": (3, 4, 25), "CXXABI": (1, 3, 11)}
@@ -57,7 +61,7 @@ def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
     names = frozenset(Path(name).name.lower() for name in images)
     for name, image in images.items():
         if name.endswith((".pyd", ".dll")):
-            found = _of_windows(image, names)
+            found = _of_windows(image, names, MAY_BE_MISSING.get(name, frozenset()))
         elif name.endswith((".so", ".dylib")) and platform.name.startswith("macos"):
             found = _of_macos(image, names)
         elif re.search(r"\.so(\.\d+)*$", name) and platform.name.startswith("linux"):
@@ -71,12 +75,12 @@ def _is_long(name: str) -> bool:
     return len(UNPACKED) + len(name) > LONGEST_PATH
 
 
-def _of_windows(image: bytes, beside: frozenset[str]) -> Iterator[str]:
+def _of_windows(image: bytes, beside: frozenset[str], missing: frozenset[str]) -> Iterator[str]:
     library: Any = lief.PE.parse(image)
     asked = {entry.name.lower() for entry in (*library.imports, *library.delay_imports)}
     for name in sorted(asked - beside):
         stem = name.removesuffix(".dll")
-        if stem not in BLENDERS and not SYSTEM.fullmatch(stem):
+        if stem not in BLENDERS | missing and not SYSTEM.fullmatch(stem):
             yield f"asks for {name}, which neither Windows nor Blender has"
 
 

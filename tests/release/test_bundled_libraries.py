@@ -57,6 +57,12 @@ def test_what_windows_blender_and_the_wheel_have_is_no_fault(windows):
     assert list(bundled_libraries.of_wheel(content, WINDOWS)) == []
 
 
+def test_what_is_told_where_it_is_missing_may_be(windows):
+    windows("VCOMP140.dll")
+    assert list(bundled_libraries.of_wheel(wheel("coacd/lib_coacd.dll"), WINDOWS)) == []
+    assert len(list(bundled_libraries.of_wheel(wheel("coacd/other.dll"), WINDOWS))) == 1
+
+
 @pytest.mark.parametrize("name", ["MSVCP140.dll", "python312.dll", "vcomp140.dll"])
 def test_what_nobody_has_is_told(windows, name):
     windows("KERNEL32.dll", late=[name])

@@ -26,6 +26,7 @@ from ...machine.ends_with_parent import end_with_this_process
 from ...mesh.surface import Surface
 from ...mesh.tet_mesh import pieces
 from .convex_tool import convex
+from .decomposition_child import NOT_LOADED
 from .tools import Tool, span
 
 Array = NDArray[np.float64]
@@ -146,6 +147,13 @@ def _answer(request: bytes, name: str, python: tuple[str, ...]) -> bytes:
             answer = b""
         finally:
             child.kill()
+    if child.returncode == NOT_LOADED:
+        raise PalpateError(
+            "colliders: {name} is hollow, and CoACD, which takes such apart, cannot be loaded; on "
+            "Windows install Microsoft's Visual C++ Redistributable for x64, which brings its "
+            "vcomp140.dll, or put convex parts of it into the collection",
+            name=name,
+        )
     if child.returncode or not answer:
         raise PalpateError(
             "colliders: {name} cannot be taken apart into convex ones; simplify it (Decimate, or a "

@@ -94,3 +94,11 @@ def test_a_library_that_is_absent_dies_or_does_not_end_is_told(monkeypatch, tmp_
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
     with pytest.raises(PalpateError, match="not built for this system"):
         convex_parts(*bracket(), "Bracket")
+
+
+def test_a_library_that_lacks_another_is_told_with_where_to_get_it(monkeypatch, tmp_path):
+    forget()
+    (tmp_path / "coacd.py").write_text("raise OSError('lib_coacd.dll: no vcomp140.dll')")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(PalpateError, match=r"cannot be loaded; on Windows .* Redistributable"):
+        convex_parts(*bracket(), "Bracket")
