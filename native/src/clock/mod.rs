@@ -6,5 +6,7 @@ pub(crate) mod realtime;
 mod schedule;
 mod sleeper;
 pub(crate) mod suspension;
+#[cfg(any(test, target_os = "macos"))]
+mod timebase;
 pub mod timing;
 mod wake_margin;

@@ -117,50 +117,34 @@ mod system {
 
 #[cfg(target_os = "macos")]
 mod system {
-    #[repr(C)]
-    struct Timebase {
-        numerator: u32,
-        denominator: u32,
-    }
+    use crate::clock::timebase::Timebase;
 
     unsafe extern "C" {
         fn mach_absolute_time() -> u64;
-        fn mach_timebase_info(info: *mut Timebase) -> i32;
         fn mach_wait_until(deadline: u64) -> i32;
     }
 
     /// `mach_wait_until` on the absolute clock.
     #[derive(Debug)]
     pub struct Sleeper {
-        numerator: u64,
-        denominator: u64,
+        base: Timebase,
     }
 
     impl Sleeper {
         pub fn new() -> Self {
-            let mut base = Timebase {
-                numerator: 1,
-                denominator: 1,
-            };
-            // SAFETY: `base` is valid for writing.
-            unsafe { mach_timebase_info(&raw mut base) };
             Self {
-                numerator: u64::from(base.numerator.max(1)),
-                denominator: u64::from(base.denominator.max(1)),
+                base: Timebase::of_the_system(),
             }
         }
 
         pub fn now_ns(&self) -> u64 {
             // SAFETY: reads a clock.
-            let ticks = u128::from(unsafe { mach_absolute_time() });
-            (ticks * u128::from(self.numerator) / u128::from(self.denominator)) as u64
+            self.base.ns(unsafe { mach_absolute_time() })
         }
 
         pub fn sleep_until(&self, deadline_ns: u64) {
-            let ticks =
-                u128::from(deadline_ns) * u128::from(self.denominator) / u128::from(self.numerator);
             // SAFETY: waits; an interruption only shortens the wait.
-            unsafe { mach_wait_until(ticks as u64) };
+            unsafe { mach_wait_until(self.base.ticks(deadline_ns)) };
         }
     }
 }

@@ -62,34 +62,21 @@ fn offset_ns() -> Option<u64> {
 
 #[cfg(target_os = "macos")]
 fn offset_ns() -> Option<u64> {
-    #[repr(C)]
-    struct Timebase {
-        numerator: u32,
-        denominator: u32,
-    }
+    use crate::clock::timebase::Timebase;
     unsafe extern "C" {
         fn mach_absolute_time() -> u64;
         fn mach_continuous_time() -> u64;
-        fn mach_timebase_info(info: *mut Timebase) -> i32;
     }
-    let mut base = Timebase {
-        numerator: 1,
-        denominator: 1,
-    };
-    // SAFETY: `base` is valid for writing; the others read clocks.
+    let base = Timebase::of_the_system();
+    // SAFETY: these read clocks.
     let (before, going_on, after) = unsafe {
-        mach_timebase_info(&raw mut base);
         (
             mach_absolute_time(),
             mach_continuous_time(),
             mach_absolute_time(),
         )
     };
-    let in_ns = |ticks: u64| {
-        (u128::from(ticks) * u128::from(base.numerator) / u128::from(base.denominator.max(1)))
-            as u64
-    };
-    (in_ns(after - before) < TOGETHER_NS).then(|| in_ns(going_on.saturating_sub(before)))
+    (base.ns(after - before) < TOGETHER_NS).then(|| base.ns(going_on.saturating_sub(before)))
 }
 
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]

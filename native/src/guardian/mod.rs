@@ -6,6 +6,10 @@
 //! whether it is there.
 
 mod end;
+#[cfg(all(unix, any(test, not(target_os = "linux"))))]
+mod named;
+#[cfg(target_os = "linux")]
+mod nameless;
 pub mod program;
 mod refusal;
 mod watch;

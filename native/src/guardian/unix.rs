@@ -1,8 +1,6 @@
 //! The host's end: starts the guardian, tells it every tick that the host lives, and dismisses it.
 
-use std::ffi::OsStr;
-use std::fs::File;
-use std::io::{self, Write};
+use std::io;
 use std::os::fd::{AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::CommandExt;
@@ -11,11 +9,14 @@ use std::sync::atomic::Ordering::SeqCst;
 
 use crate::guardian::end::end;
 #[cfg(not(target_os = "linux"))]
-use crate::guardian::program::now_ns;
+use crate::guardian::named::{memory, with_program};
+#[cfg(target_os = "linux")]
+use crate::guardian::nameless::{memory, with_program};
 use crate::guardian::program::{DISMISSED, LEFT, Sheet, map_sheet};
 use crate::guardian::refusal::refused;
 use crate::guardian::watch::{Attention, PROGRAM, Watch, watch};
 
+/// As lists of processes tell it.
 const NAME: &str = "palpate-guardian";
 
 /// A process that watches this one, for one open port.
@@ -40,13 +41,13 @@ impl Guardian {
             return Err(refused("this build has none"));
         }
         let (tie, its_end) = UnixStream::pair().map_err(refused)?;
-        let paper = memory(c"palpate-sheet", size_of::<Sheet>()).map_err(refused)?;
+        let paper = memory("palpate-sheet", size_of::<Sheet>()).map_err(refused)?;
         let sheet =
             map_sheet(paper.as_raw_fd()).ok_or_else(|| refused(io::Error::last_os_error()))?;
         // SAFETY: the descriptor is open for as long as it is borrowed.
         let port = unsafe { BorrowedFd::borrow_raw(port.as_raw_fd()) };
         let port = port.try_clone_to_owned().map_err(refused)?;
-        let child = with_program(|path| {
+        let child = with_program(PROGRAM, |path| {
             Command::new(path)
                 .arg0(NAME)
                 .env_clear()
@@ -102,62 +103,4 @@ impl Drop for Guardian {
         // SAFETY: mapped by `map_sheet` for this one alone, and used no more.
         let _ = unsafe { libc::munmap(at.cast(), size_of::<Sheet>()) };
     }
-}
-
-/// Memory as a file, all zero, that no other program can name.
-#[cfg(target_os = "linux")]
-fn memory(name: &std::ffi::CStr, bytes: usize) -> io::Result<File> {
-    use std::os::fd::FromRawFd;
-    // SAFETY: the name ends with a zero; what is returned is a new descriptor or an error.
-    let file = unsafe {
-        match libc::memfd_create(name.as_ptr(), libc::MFD_CLOEXEC) {
-            -1 => return Err(io::Error::last_os_error()),
-            descriptor => File::from_raw_fd(descriptor),
-        }
-    };
-    file.set_len(bytes as u64)?;
-    Ok(file)
-}
-
-#[cfg(not(target_os = "linux"))]
-fn memory(name: &std::ffi::CStr, bytes: usize) -> io::Result<File> {
-    use std::os::fd::FromRawFd;
-    let name = format!("/{}-{}\0", name.to_string_lossy(), std::process::id());
-    let flags = libc::O_RDWR | libc::O_CREAT | libc::O_EXCL;
-    // SAFETY: the name ends with a zero and is given back at once; what is returned is a new descriptor,
-    // closed when another program is started, or an error.
-    let file = unsafe {
-        let descriptor = libc::shm_open(name.as_ptr().cast(), flags, 0o600);
-        if descriptor == -1 {
-            return Err(io::Error::last_os_error());
-        }
-        libc::shm_unlink(name.as_ptr().cast());
-        libc::fcntl(descriptor, libc::F_SETFD, libc::FD_CLOEXEC);
-        File::from_raw_fd(descriptor)
-    };
-    file.set_len(bytes as u64)?;
-    Ok(file)
-}
-
-/// Starts something with a path to the program, which is nowhere on the disk.
-#[cfg(target_os = "linux")]
-fn with_program<T>(start: impl FnOnce(&OsStr) -> io::Result<T>) -> io::Result<T> {
-    let mut file = memory(c"palpate-guardian", 0)?;
-    file.write_all(PROGRAM)?;
-    start(format!("/proc/self/fd/{}", file.as_raw_fd()).as_ref())
-}
-
-/// Starts something with a path to the program, which is on the disk only as long as that takes.
-#[cfg(not(target_os = "linux"))]
-fn with_program<T>(start: impl FnOnce(&OsStr) -> io::Result<T>) -> io::Result<T> {
-    use std::os::unix::fs::OpenOptionsExt;
-    let name = format!("{NAME}-{}-{}", std::process::id(), now_ns());
-    let path = std::env::temp_dir().join(name);
-    let mut open = std::fs::OpenOptions::new();
-    let mut file = open.write(true).create_new(true).mode(0o700).open(&path)?;
-    let written = file.write_all(PROGRAM);
-    drop(file);
-    let started = written.and_then(|()| start(path.as_ref()));
-    std::fs::remove_file(&path)?;
-    started
 }
