@@ -10,4 +10,4 @@ export PALPATE_PACKAGE="Z:\\windows\\packages\\$(basename "$package")"
 # Without the checkout on the path, which `python -m pytest` would put there.
 "$(dirname "$(realpath "$0")")/blender_python.sh" "$root" "$number" "$bpy" -c \
     'import sys; sys.path = [p for p in sys.path if p]; import pytest; sys.exit(pytest.main(sys.argv[1:]))' \
-    -q -p no:cacheprovider "$@"
+    -q -p no:cacheprovider --timeout 900 "$@"
