@@ -57,13 +57,17 @@ class DrawnMap:
         places = CubicPlaces(triangle, alpha, len(triangles))
         return cls(triangle, normals, _beside(edges, body), _controls(edges, body), places)
 
-    def displacements(self, free_surface: NDArray[np.float64]) -> NDArray[np.float32]:
-        """Displacements (p, 3) of drawn vertices from those of the free surface nodes (n, 3)."""
+    def displacements(
+        self, free_surface: NDArray[np.float64], into: NDArray[np.float32] | None = None
+    ) -> NDArray[np.float32]:
+        """Displacements (p, 3) of drawn vertices from those of the free surface nodes (n, 3); in
+        an array of that shape that the caller keeps, ``into``, or in a new one.
+        """
         known = np.concatenate([free_surface, self.beside @ free_surface, np.zeros((1, 3))])
         ends = known[self.controls]
         # With this value in the middle the patch keeps quadratics.
         middle = ends[:, 3:].sum(axis=1) / 4.0 - ends[:, :3].sum(axis=1) / 6.0
-        moved = np.empty((len(self.triangle), 3), dtype=np.float32)
+        moved = np.empty((len(self.triangle), 3), dtype=np.float32) if into is None else into
         self.places.write(np.concatenate([ends, middle[:, None]], axis=1), moved)
         return moved
 

@@ -94,14 +94,19 @@ class DrawnBody:
         return self.frame.body_from_local(found.reshape(-1, 3).astype(np.float64))
 
     def drawn_displacement(
-        self, displacements: Array, tools: Sequence[PressingTool] = ()
+        self,
+        displacements: Array,
+        tools: Sequence[PressingTool] = (),
+        into: NDArray[np.float32] | None = None,
     ) -> NDArray[np.float32]:
         """Flat displacements (3 p,) of the drawn vertices, local units, by those of the free
-        surface nodes (n, 3), metres; no vertex ends within the tools.
+        surface nodes (n, 3), metres; no vertex ends within the tools. They are written ``into`` an
+        array like ``rest``, or a new one.
         """
         into_local = np.linalg.inv(self.frame.metric)
+        shaped = None if into is None else into.reshape(-1, 3)
         # The map takes units as they are; there are far fewer nodes than vertices.
-        local = self.hung.displacements(displacements @ into_local)
+        local = self.hung.displacements(displacements @ into_local, shaped)
         if tools:
             near = self._near(tools, float(np.abs(displacements).max(initial=0.0)))
             found, normals = self.places[near], self.hung.normals[self.hung.triangle[near]]
@@ -125,6 +130,13 @@ class DrawnBody:
                 near = near[np.abs(axis[near] - middle) < reach]
             found.append(near)
         return np.unique(np.concatenate(found))
+
+    @cached_property
+    def canvas(self) -> NDArray[np.float32]:
+        """An array like ``rest`` for displacements of which only one frame is needed at a time. The
+        system hands a new array of megabytes over page by page, which takes longer than to fill it.
+        """
+        return np.empty_like(self.rest)
 
     @cached_property
     def _axes(self) -> NDArray[np.float32]:

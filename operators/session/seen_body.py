@@ -161,10 +161,12 @@ class SeenBody:
         self, thing: bpy.types.Object, displacements: Array | None, snapshot: Snapshot | None
     ) -> None:
         pressed = None if displacements is None else snapshot
-        moved = np.zeros_like(self.drawn.rest)
-        if displacements is not None:
+        drawn = self.drawn
+        if displacements is None:
+            moved = np.zeros_like(drawn.rest)
+        else:
             tools = () if pressed is None else self.tip.pressing(pressed)
-            moved = self.drawn.drawn_displacement(displacements, tools)
+            moved = drawn.drawn_displacement(displacements, tools, drawn.canvas)
         if self.prop is not None:
             moved = self.prop.beyond_rest(self.drawn, moved)
         law, now = yielding_of(thing, self.drawn.frame), 0.0 if snapshot is None else snapshot.time

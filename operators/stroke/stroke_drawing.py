@@ -17,7 +17,7 @@ def draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
     """Write the displacement of a stroke into the live layer, beside what shows how it rests."""
     lying = stroked.lying
     if lying is None:
-        moved = drawn.drawn_displacement(stroked.displacements, stroked.tools)
+        moved = drawn.drawn_displacement(stroked.displacements, stroked.tools, drawn.canvas)
         live_layer.write(thing, moved)
     else:
         moved = lying.moved

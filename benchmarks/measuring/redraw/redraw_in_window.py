@@ -15,6 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from stage import Stage, Wait
 
+from bl_ext.user_default.palpate.core.contact.tool.pose import Pose
+from bl_ext.user_default.palpate.core.contact.tool.tool_dent import PressingTool
+from bl_ext.user_default.palpate.core.contact.tool.tools import sphere
 from bl_ext.user_default.palpate.operators.layer import live_layer
 from bl_ext.user_default.palpate.operators.object import drawn_body
 
@@ -87,9 +90,14 @@ def _layer(thing: bpy.types.Object) -> Step:
     live_layer.hang(thing)
     rng = np.random.default_rng(15)
     moves = 1e-3 * rng.normal(size=(drawn.body.compliance.node_count, 3))
+    # A fingertip, out of which vertices are kept, 2 mm deep in the top of the ball.
+    tip = PressingTool(
+        sphere(0.01), Pose.at(np.array([0.0, 0.0, 0.108])), np.array([0.0, 0.0, 1.0])
+    )
 
     def step(number: int) -> None:
-        live_layer.write(thing, drawn.drawn_displacement(moves * (1 + 0.1 * number)))
+        grown = moves * (1 + 0.1 * number)
+        live_layer.write(thing, drawn.drawn_displacement(grown, (tip,), drawn.canvas))
 
     return step
 

@@ -76,7 +76,7 @@ def measured(count: int) -> dict[str, object]:
     figures["start of a press"] = times(lambda: drawn_body.open_body(thing, scene))
     drawn = drawn_body.open_body(thing, scene)
     moves = 1e-4 * np.random.default_rng(15).normal(size=(drawn.body.compliance.node_count, 3))
-    figures["displacements"] = times(lambda: drawn.drawn_displacement(moves), 20)
+    figures["displacements"] = times(lambda: drawn.drawn_displacement(moves, (), drawn.canvas), 20)
     bpy.data.objects.remove(thing)
     return figures
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...tool.finger_tip import FingerTip
-from .pushing import DEEPEST, Pushing
+from .fingertips import Fingertips
 from .thickness import Thickness
 
 # Share of its thickness by which a push squeezes a body at most: beyond, it would come out on the
 # far side.
 MOST_SQUEEZED = 0.8
+DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper (F)"
 ENDS = "The body ends here: it goes no deeper"
 
 
@@ -24,12 +25,12 @@ class Deepest:
     reason: str
 
     @classmethod
-    def of(cls, thickness: Thickness, pushing: Pushing) -> Deepest:
+    def of(cls, thickness: Thickness, fingertips: Fingertips) -> Deepest:
         """Limit at a place: the far side's, or a fingertip's if that is nearer, for a linear body
         lets go of what it has swallowed, and leans aside.
         """
         far = cls(MOST_SQUEEZED * thickness.metres, ENDS)
-        if not pushing.reaches:
+        if not fingertips.reach:
             return far
-        tip = cls(FingerTip(pushing.fingertips.tool).deepest, DEEPEST)
+        tip = cls(FingerTip(fingertips.tool).deepest, DEEPEST)
         return min(far, tip, key=lambda one: one.metres)

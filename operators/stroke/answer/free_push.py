@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +12,12 @@ from ....core.contact.place import nearest_place
 from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
+from ....core.rest.rest import Rest
 from ...lying.free_body import FreeBody, Lying
 from ...object.drawn_body import DrawnBody
-from .deepest import MOST_SQUEEZED
+from .deepest import DEEPEST, Deepest
 from .fingertips import Fingertips
 from .motion import Asked
-from .pushing import DEEPEST
 from .thickness import Thickness
 
 Array = NDArray[np.float64]
@@ -52,13 +53,25 @@ class FreePush:
         free.resting.settle()
         return cls(tips, rested, free)
 
+    @property
+    def deepest(self) -> Deepest | None:
+        """How deep the fingertips go at most, where the body is now: it is pressed in so far beside
+        what it has given way as a whole. None where no far side is found.
+        """
+        thickness = self._thickness
+        if thickness is None:
+            return None
+        limit = Deepest.of(thickness, self.tips)
+        gone = self._far(thickness, self.free.resting.rest) - self._far(thickness, self.rested.rest)
+        inward = self.rested.rest.placement.rotation @ thickness.inward
+        return replace(limit, metres=limit.metres + max(0.0, float(gone @ inward)))
+
     def lead(self, asked: Asked) -> Asked:
         """Have the fingertips go in as asked; what is asked of them at most."""
-        tips, done = self.tips, asked
-        thickness = Thickness.under(tips.drawn, tips.grips[0])
-        if thickness is not None and asked.amount > MOST_SQUEEZED * thickness.metres:
-            done = replace(asked, amount=MOST_SQUEEZED * thickness.metres)
-        self.free.resting.lead([self._goal(grip, done.amount) for grip in tips.places(done)])
+        deepest, done = self.deepest, asked
+        if deepest is not None and asked.amount > deepest.metres:
+            done = replace(asked, amount=deepest.metres)
+        self.free.resting.lead([self._goal(grip, done.amount) for grip in self.tips.places(done)])
         return done
 
     def parts(self, _asked: Asked) -> int:
@@ -69,6 +82,17 @@ class FreePush:
     def wrench(self) -> tuple[Array, float]:
         """Force of the first fingertip on the body, newton, and its torque about its normal."""
         return -self.free.resting.tool_touches()[0].force, 0.0
+
+    @cached_property
+    def _thickness(self) -> Thickness | None:
+        return Thickness.under(self.tips.drawn, self.tips.grips[0])
+
+    def _far(self, thickness: Thickness, rest: Rest) -> Array:
+        """Place (3,) of the far side where the body rests so, in the world, metres."""
+        drawn = self.tips.drawn
+        displacements = rest.displacements(self.free.resting.young_modulus)
+        nodes = drawn.body.mesh.nodes + drawn.node_displacements(displacements)
+        return rest.to_world(thickness.alpha @ nodes[thickness.nodes])
 
     def _goal(self, grip: Grip, depth: float) -> Pose:
         """Pose in the world of a fingertip that has gone in from where the surface came to rest."""

@@ -22,7 +22,7 @@ from .deepest import ENDS
 from .free_hold import FreeHold
 from .free_push import FreePush
 from .motion import Asked, Motion
-from .stroke import PACE, Stroke
+from .stroke import ALMOST, PACE, Stroke
 from .stroked import Stroked
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ class FreeStroke:
     rested: Lying
     _before: Before
     _alone: FreeBody
-    pace, moves, ends = PACE, True, ENDS
+    pace, moves = PACE, True
 
     @classmethod
     def begin(
@@ -73,6 +73,12 @@ class FreeStroke:
         drawn = replace(drawn, frame=rested.frame)
         young_modulus = thing.palpate.young_modulus
         return cls(drawn, grips, young_modulus, rested, Before.of(thing), alone)
+
+    @property
+    def ends(self) -> str:
+        """Why a push goes no deeper."""
+        deepest = self._push.deepest
+        return ENDS if deepest is None else deepest.reason
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Move the object to where it came to rest."""
@@ -102,9 +108,15 @@ class FreeStroke:
         if hand is None:
             return asked, self._pinched(asked)
         try:
-            for part in range(1, (parts := hand.parts(asked)) + 1):
-                done = self._led(hand, asked.part(part / parts) if part < parts else asked)
-                lying = hand.free.settle()
+            for part in range(1, parts := hand.parts(asked)):
+                self._led(hand, asked.part(part / parts))
+                hand.free.settle()
+            done, lying = self._led(hand, asked), hand.free.settle()
+            # What gives way as a whole is pushed on, as far as it has given way.
+            gone = 0.0
+            while done is not asked and ALMOST * done.amount > gone:
+                gone = done.amount
+                done, lying = self._led(hand, asked), hand.free.settle()
         except PalpateError as problem:
             raise PalpateError(hand.refused) from problem
         return done, _stroked(hand, lying)

@@ -12,11 +12,10 @@ from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.shape.felt import loads_of
 from ...object.drawn_body import DrawnBody
+from .deepest import DEEPEST
 from .fingertips import Fingertips
 from .motion import Asked
 from .stroked import Stroked
-
-DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper (F)"
 
 
 @dataclass(frozen=True, eq=False)

@@ -133,7 +133,7 @@ class Stroke:
         return Stroked(answer.displacements, force, answer.torque, loads=tuple(loads))
 
     def _deepest(self, thickness: Thickness) -> Deepest:
-        return Deepest.of(thickness, self._pushing)
+        return Deepest.of(thickness, self._pushing.fingertips)
 
     @cached_property
     def _thickness(self) -> Thickness | None:

@@ -74,7 +74,13 @@ def test_a_kept_shape_lies_outside_the_tool(chosen, thing):
     assert inside(drawn.drawn_displacement(0.0 * nodes)) > 4e-3
     kept = moved(thing, press.layer)
     assert inside(kept) < 1e-6
-    np.testing.assert_allclose(kept.ravel(), drawn.drawn_displacement(nodes, tools), atol=1e-6)
+    alone = drawn.drawn_displacement(nodes, tools)
+    np.testing.assert_allclose(kept.ravel(), alone, atol=1e-6)
+    # On what was drawn before, as from frame to frame.
+    for frame in (2.0 * nodes, nodes):
+        again = drawn.drawn_displacement(frame, tools, drawn.canvas)
+    assert np.shares_memory(again, drawn.canvas)
+    np.testing.assert_array_equal(again, alone)
 
 
 def test_friction_of_the_material_holds_a_fingertip_back(chosen, thing):

@@ -105,6 +105,23 @@ def begun_on(thing, place, mirrored=(False, False, False)):
     return body, stroke, part("operators.stroke.answer.motion")
 
 
+def test_a_fingertip_is_not_swallowed_where_the_floor_holds_against_it(free_cube):
+    """By three quarters of its width at the most, as on what is pinned, with the limit's reason."""
+    _, stroke, motions = begun_on(free_cube, TOP)
+    asked, made = stroke.stroked(motions.Asked(motions.Motion.PUSH, 0.045))
+    assert asked.amount == pytest.approx(1.5 * RADIUS, rel=0.1)
+    assert "larger" in stroke.ends
+    assert made.force > 0.0
+
+
+def test_a_push_goes_on_as_far_as_the_object_gives_way(free_cube):
+    """Three times as far as its fingertip goes in, and the object before it."""
+    free_cube.palpate.rest_friction = 0.1
+    assert push(free_cube, 0.06, place=SIDE) == {"FINISHED"}
+    assert free_cube.location.x == pytest.approx(-0.06, abs=1.5 * RADIUS)
+    assert np.isclose(free_cube.location.x, -0.055, atol=0.005)
+
+
 def test_a_grab_carries_the_object_about_and_it_comes_down_where_it_is_let_go(free_cube):
     bpy.ops.palpate.settle()
     before = np.array(free_cube.matrix_world)

@@ -11,6 +11,15 @@ def test_vertices_on_nodes_move_as_the_nodes_do(body, rng):
     np.testing.assert_allclose(hung.displacements(u), u, atol=1e-6)
 
 
+def test_an_array_that_is_kept_holds_the_last_frame_alone(body, rng):
+    first, last = rng.normal(size=(2, body.compliance.node_count, 3))
+    hung = DrawnMap.hang(body.mesh.nodes[body.mesh.surface_nodes], body)
+    kept = np.full((len(body.mesh.surface_nodes), 3), np.nan, dtype=np.float32)
+    for u in (first, last):
+        assert hung.displacements(u, kept) is kept
+    np.testing.assert_array_equal(kept, hung.displacements(last))
+
+
 def test_pinned_vertices_do_not_move(body, rng):
     u = rng.normal(size=(body.compliance.node_count, 3))
     surface_pins = np.intersect1d(body.fixed, body.mesh.surface_nodes)
