@@ -120,16 +120,15 @@ class DrawnBody:
         """Drawn vertices (k,) that may be within a tool where none moves along an axis by more than
         twice ``largest``, metres, as far as a smooth dent is deeper than its nodes.
         """
+        order, (x, y, z) = self._from_left
         found = []
         for pressing in tools:
-            reach = FARTHEST_KEPT_OUT * pressing.tool.reach + 2.0 * largest
-            x, y, z = self._axes
+            reach = np.float32(FARTHEST_KEPT_OUT * pressing.tool.reach + 2.0 * largest)
             at = pressing.pose.position.astype(np.float32)
-            near = np.flatnonzero(np.abs(x - at[0]) < reach)
-            for axis, middle in zip((y, z), at[1:], strict=True):
-                near = near[np.abs(axis[near] - middle) < reach]
-            found.append(near)
-        return np.unique(np.concatenate(found))
+            slab = slice(*np.searchsorted(x, np.array([at[0] - reach, at[0] + reach])))
+            within = (np.abs(y[slab] - at[1]) < reach) & (np.abs(z[slab] - at[2]) < reach)
+            found.append(order[slab][within])
+        return found[0] if len(found) == 1 else np.unique(np.concatenate(found))
 
     @cached_property
     def canvas(self) -> NDArray[np.float32]:
@@ -139,9 +138,12 @@ class DrawnBody:
         return np.empty_like(self.rest)
 
     @cached_property
-    def _axes(self) -> NDArray[np.float32]:
-        """These coordinates (3, p), one axis after the other, metres."""
-        return np.ascontiguousarray(self.places.T, dtype=np.float32)
+    def _from_left(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Numbers (p,) of the drawn vertices along the first axis, and their coordinates (3, p) in
+        this order, metres: what is near a tool is looked for in a slab, not among all.
+        """
+        order = np.argsort(self.places[:, 0])
+        return order, np.ascontiguousarray(self.places[order].T, dtype=np.float32)
 
     def node_displacements(self, displacements: Array) -> Array:
         """Displacements of all nodes (N, 3), zero where pinned or inside."""

@@ -159,7 +159,7 @@ class Tool:
         # Closer than this the direction is rounding; the face's own normal is as good.
         clear = distance > 1e-9 * self.radius
         normals = np.tile(self._normal_of_flat_core, (len(points), 1))
-        normals[clear] = away[clear] / distance[clear, None]
+        np.divide(away, distance[:, None], out=normals, where=clear[:, None])
         if len(self.planes):
             heights = points @ self.planes[:, :3].T + self.planes[:, 3]
             nearest = heights.argmax(axis=1)
@@ -170,6 +170,8 @@ class Tool:
         return distance - self.radius, normals
 
     def _closest_core_points(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        if len(self.core) == 1:
+            return np.broadcast_to(self.core, points.shape)
         corners = self.core[self.faces]
         pairs = (len(points), len(corners), 3)
         spread = np.broadcast_to(points[:, None], pairs).reshape(-1, 3)

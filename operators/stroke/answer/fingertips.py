@@ -18,8 +18,9 @@ from .motion import Asked
 
 Array = NDArray[np.float64]
 
-# Radii by which what is beside it may keep a fingertip off its place.
-FARTHEST_OFF = 0.5
+# Radii by which what is beside it may keep a fingertip off its place. Held off by more, as between a
+# wing and the flank, it wedges what is beside it apart, and the place that was touched goes aside.
+FARTHEST_OFF = 0.1
 
 
 @dataclass(frozen=True, eq=False)
