@@ -37,6 +37,8 @@ CLOSE, MOST_STEPS = 0.002, 200
 ENOUGH = 0.01
 # What carries less than this share of a tool's heaviest node is not led by itself.
 LIGHTEST = 1e-3
+# Times as far as a linear body at most: beyond, it swings away from its tool instead of giving way.
+FARTHEST = 1.25
 # Bounds of what is believed.
 LEAST, MOST = 0.3, 3.0
 
@@ -142,8 +144,11 @@ class FirmBody:
             ways = depth * press.ways
             further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
             share = float(further.forces @ press.ways) / (depth * press.work)
-            # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
-            if further.left > ENOUGH or (press.is_of_tools and depth * share < before):
+            # A tool's force that falls is of a body that has turned aside, where a tool cannot go;
+            # and so is a way far beyond the linear one, as of a wing that swings.
+            swings = _farthest(further.displacements) > FARTHEST * depth * press.farthest
+            aside = press.is_of_tools and (depth * share < before or swings)
+            if further.left > ENOUGH or aside:
                 break
             rest, before = further, depth * share
             known[depth] = min(max(share, LEAST), MOST)
@@ -174,6 +179,7 @@ class _Press:
     ways : (p,), work of each on the linear displacement.
     work : of as much of each as leads a linear body there, J/Pa.
     energy : elastic, J/Pa.
+    farthest : way of a node, metres.
     is_of_tools : and of no point.
     """
 
@@ -181,6 +187,7 @@ class _Press:
     ways: Array
     work: float
     energy: float
+    farthest: float
     is_of_tools: bool
 
     @classmethod
@@ -214,4 +221,8 @@ class _Press:
         ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
         work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())
         is_of_tools = not any(load.sticks for load in loads)
-        return cls(made, ways, work, energy, is_of_tools)
+        return cls(made, ways, work, energy, _farthest(linear), is_of_tools)
+
+
+def _farthest(displacements: Array) -> float:
+    return float(np.linalg.norm(displacements, axis=1).max())
