@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.bake.cost.crossing import crossing_length
 from ...core.bake.cost.size import ShapeSize, bending
 from ...core.errors import PalpateError
 from ...core.mesh.formats.polygons import triangulated
@@ -123,4 +124,5 @@ def shape_size(surface: Surface) -> ShapeSize:
     i, j, k = (surface.vertices[surface.triangles[:, corner]] - middle for corner in range(3))
     volume = abs(float(np.einsum("fx,fx->", i, np.cross(j, k)))) / 6.0
     area, triangles = float(surface.areas.sum()), len(surface.triangles)
-    return ShapeSize(area, volume, surface.diagonal, triangles, bending(surface))
+    crossing = crossing_length(surface)
+    return ShapeSize(area, volume, surface.diagonal, triangles, bending(surface), crossing)

@@ -9,6 +9,7 @@ import numpy as np
 from ...mesh.surface import Surface
 from ...mesh.tet_mesh import TetMesh
 from ...mesh.winding_volume import enclosed_volume
+from .crossing import crossing_length
 
 # Edges sharper than this are features of the shape, which need no finer triangles.
 SHARP_EDGE = np.radians(60.0)
@@ -25,6 +26,7 @@ class ShapeSize:
     diagonal : of its bounding box, metres.
     triangles : their number.
     bending : see :func:`bending`, metres; None to assume a body as round as its volume allows.
+    crossing : length along which it passes through itself, metres.
     """
 
     area: float
@@ -32,6 +34,7 @@ class ShapeSize:
     diagonal: float
     triangles: int
     bending: float | None = None
+    crossing: float = 0.0
 
     @classmethod
     def of(cls, surface: Surface) -> ShapeSize:
@@ -43,6 +46,7 @@ class ShapeSize:
             welded.diagonal,
             len(welded.triangles),
             bending(welded),
+            crossing_length(welded),
         )
 
 

@@ -18,8 +18,8 @@ from .motion import Asked
 
 Array = NDArray[np.float64]
 
-# Radii by which what is beside it may keep a fingertip off its place. Held off by more, as between a
-# wing and the flank, it wedges what is beside it apart, and the place that was touched goes aside.
+# Radii by which what is beside it may keep a fingertip off its place. Held off by more, as between
+# a wing and the flank, it wedges what is beside it apart, and its own place goes aside.
 FARTHEST_OFF = 0.1
 
 

@@ -191,6 +191,17 @@ def test_the_machine_is_measured_once():
     assert dgemm_rate(1) == dgemm_rate(1) > 1e7
 
 
+def test_what_passes_through_itself_takes_longer():
+    """Suzanne, whose eyes pass through her head: 8.1 to 9.6 s were taken where 4.1 were told."""
+    size = ShapeSize(0.87, 0.1, 1.0, 968, 9.36)
+    settings = BakeSettings(threads=1)
+    alone, crossing = (
+        estimate_cost(replace(size, crossing=length), settings) for length in (0.0, 0.456)
+    )
+    assert crossing.seconds > alone.seconds + 2.0
+    assert crossing.nodes > alone.nodes + 500
+
+
 # Triangles, bending as a share of the diagonal, edge length, epsilon, nodes, and processor seconds
 # of fTetWild, seen once on busy machines.
 MESHED = {
@@ -253,12 +264,16 @@ MESHED = {
     "cow, close": (5804, 16.38, 0.05, 0.001, 4955, 17.3),
 }
 
+# Length along which those that pass through themselves do, as a share of the diagonal.
+CROSSING = {"monkey": 0.456, "cow": 0.267}
+
 
 def test_seconds_of_tetrahedralization_lie_within_the_spread_nine_times_of_ten():
     errors = []
-    for triangles, bending_share, edge_length, epsilon, nodes, seconds in MESHED.values():
+    for name, (triangles, bending_share, edge_length, epsilon, nodes, seconds) in MESHED.items():
         settings = BakeSettings(edge_length=edge_length, epsilon=epsilon)
-        size = ShapeSize(1.0, 1.0, 1.0, triangles, bending_share)
+        crossing = CROSSING.get(name.partition(",")[0], 0.0)
+        size = ShapeSize(1.0, 1.0, 1.0, triangles, bending_share, crossing)
         errors.append(np.log(tetrahedralize_seconds(size, settings, nodes) / seconds))
     assert np.quantile(np.abs(errors), 0.9) < np.log(TETRAHEDRALIZE_SPREAD)
     assert np.abs(errors).max() < np.log(3.2)
