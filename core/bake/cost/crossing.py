@@ -32,7 +32,7 @@ def crossing_length(surface: Surface) -> float:
     counts = last - np.arange(len(order)) - 1
     total, start = 0.0, 0
     while start < len(order):
-        some = np.searchsorted(np.cumsum(counts[start:]), PAIRS_AT_ONCE) + 1
+        some = int(np.searchsorted(np.cumsum(counts[start:]), PAIRS_AT_ONCE)) + 1
         here = np.arange(start, min(start + some, len(order)))
         first = np.repeat(here, counts[here])
         within = np.arange(len(first)) - np.repeat(
@@ -43,7 +43,7 @@ def crossing_length(surface: Surface) -> float:
         one, two = one[near.all(axis=1)], two[near.all(axis=1)]
         apart = ~(triangles[one][:, :, None] == triangles[two][:, None, :]).any(axis=(1, 2))
         total += float(_shared(corners[one[apart]], corners[two[apart]]).sum())
-        start = here[-1] + 1
+        start = int(here[-1]) + 1
     return total
 
 
@@ -58,7 +58,8 @@ def _shared(one: Array, two: Array) -> Array:
             place = start + share[:, None] * along
             low, high = np.fmin(low, place), np.fmax(high, place)
     # Without a hit the box is inside out.
-    return np.linalg.norm(np.maximum(high - low, 0.0), axis=1)
+    lengths: Array = np.linalg.norm(np.maximum(high - low, 0.0), axis=1)
+    return lengths
 
 
 def _hit(start: Array, along: Array, triangles: Array) -> Array:
@@ -77,4 +78,5 @@ def _hit(start: Array, along: Array, triangles: Array) -> Array:
         meets = (
             (to_j >= 0.0) & (to_k >= 0.0) & (to_j + to_k <= 1.0) & (share >= 0.0) & (share <= 1.0)
         )
-    return np.where(meets, share, np.nan)
+    found: Array = np.where(meets, share, np.nan)
+    return found

@@ -1,12 +1,14 @@
 """Firmness of presses: what a body of its law needs to be pressed as deep as a linear one."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from bodies.bare_body import bare_body, beam_mesh
 
 from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad
 from palpate.core.shape.rotation_strain.firmness import FirmBody, Firmness
 from palpate.core.shape.rotation_strain.relaxation import relaxation
@@ -146,3 +148,24 @@ def test_a_wall_presses_a_block_that_would_turn_aside_under_its_forces(block):
     assert firmness.is_whole
     # Neo-Hookean rubber under a smooth wall on a base that holds it.
     assert 1.45 < firmness.deepest < 1.75
+
+
+def test_a_thin_part_does_not_swing_away_from_its_tool():
+    """A plate pushed down and towards where it is held: under forces in proportion its end went
+    nearly twice as far as that of a linear one. Where leading each node does no better, it counts
+    as not found so deep.
+    """
+    cube, _ = paper_cube(1.0, 6)
+    mesh = TetMesh.checked(cube.nodes * [2.0, 1.0, 0.3], cube.tets)
+    plate = firm_body(mesh, np.flatnonzero(mesh.nodes[:, 0] == 0.0), 0.3)
+    away = np.linalg.norm(plate.solid.positions - [0.33, 0.5, 0.3], axis=1)
+    nodes, way = np.flatnonzero(away < 0.36), np.array([-1.0, 0.0, -1.0])
+    on_top = nodes[plate.solid.positions[nodes, 2] > 0.299]
+    load = FingerLoad(plate.solid.free[on_top], np.tile(way, (len(on_top), 1)))
+    linear = plate.solid.linear(plate.solid.on_free_nodes(load.nodes, load.forces))
+    size = 0.3 / np.abs(linear[on_top] @ way).max()
+    found = plate.pressed([replace(load, forces=size * load.forces)])
+    farthest = size * np.linalg.norm(linear, axis=1).max()
+    moved = found.displacements
+    assert moved is None or np.linalg.norm(moved, axis=1).max() < 1.3 * farthest
+    assert found.firmness.reach > 0.0
