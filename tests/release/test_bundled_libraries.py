@@ -109,6 +109,16 @@ def test_a_library_that_not_every_linux_has_is_told(linux):
     assert "libgomp.so.1" in fault
 
 
+def test_who_compiles_the_servo_for_a_newer_linux_may(linux, tmp_path):
+    linux("GLIBC_2.34")
+    package = tmp_path / "package.zip"
+    with zipfile.ZipFile(package, "w") as archive:
+        for name in ("palpate_servo-1-manylinux_2_34_x86_64", "a-1-manylinux_2_28_x86_64"):
+            archive.writestr(f"wheels/{name}.whl", wheel("a.so"))
+    (fault,) = bundled_libraries.faults(package, LINUX)
+    assert fault.startswith("a-1-")
+
+
 def test_what_macos_and_the_wheel_have_is_no_fault(macos):
     macos("ARM64", "/usr/lib/libSystem.B.dylib", "@loader_path/.dylibs/libgmp.dylib")
     assert list(bundled_libraries.of_wheel(wheel("a.so", ".dylibs/libgmp.dylib"), MACOS)) == []
