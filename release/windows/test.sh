@@ -14,17 +14,27 @@ install() { # PIP ARGUMENTS...
         --target "$packages" "$@" 2> >(grep -v 'as the .root. user' >&2 || true)
 }
 
-needed() { # what pyproject.toml asks for, but for what only Linux has
+needed() { # what pyproject.toml asks for on Windows
     "$python" - <<'PYTHON'
 import tomllib
+from packaging.requirements import Requirement
+WINDOWS = {"sys_platform": "win32", "os_name": "nt", "platform_system": "Windows", "platform_machine": "AMD64"}
 project = tomllib.load(open("pyproject.toml", "rb"))["project"]
 extras = project["optional-dependencies"]
-asked = project["dependencies"] + extras["test"] + extras["scheduler"] + ["colorama", "matplotlib"]
-print(*(one for one in asked if not one.startswith("palpate") and "linux" not in one), sep="\n")
+for line in [*project["dependencies"], *extras["test"], *extras["scheduler"], "colorama", "matplotlib"]:
+    asked = Requirement(line)
+    if not asked.name.startswith("palpate") and (asked.marker is None or asked.marker.evaluate(WINDOWS)):
+        # pip would look at the system that it runs on.
+        asked.marker = None
+        print(asked)
 PYTHON
 }
 
-[ -d "$packages/distributed" ] || needed | install --requirement /dev/stdin
+asked=$(needed)
+if [ "$asked" != "$(cat "$packages/asked.txt" 2>/dev/null)" ]; then
+    install --requirement /dev/stdin <<<"$asked"
+    echo "$asked" >"$packages/asked.txt"
+fi
 install --no-deps --force-reinstall "$wheel"
 # What an editable install would do: the checkout as `palpate`, with its version.
 mkdir -p "$packages/palpate-0.dist-info" "$root/windows/checkout"
