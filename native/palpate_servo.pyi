@@ -635,6 +635,30 @@ class Pile:
         Raises RuntimeError where it does not.
         """
 
+    def settle_on(self, ticks: int) -> bool:
+        """Go on with that by so many ticks at most: whether all rests. Errors as of settle."""
+
+@final
+class MovedSurface:
+    """The surface of a body, moved, and where it is within the body itself."""
+
+    def __init__(self, body: Body) -> None: ...
+    def folds(
+        self, places: NDArray[np.float64], deepest: float
+    ) -> tuple[
+        NDArray[np.int64],
+        NDArray[np.int64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+    ]:
+        """Nodes (k,) that are within the body by deepest m at most where all are moved to places
+        (n, 3); triangles (k,) over them, area coordinates (k, 3) there, outward normals (k, 3) and
+        depths (k,), m.
+
+        Raises ValueError for other than finite places of all nodes.
+        """
+
 @final
 class Resting:
     """A body that nobody holds, pressed by fingers, without a clock.
@@ -693,6 +717,9 @@ class Resting:
 
     def settle(self) -> None:
         """Tick until nothing changes any more. Raises RuntimeError where the body does not rest."""
+
+    def settle_on(self, ticks: int) -> bool:
+        """Go on with that by so many ticks at most: whether it rests. Errors as of settle."""
 
     def touches(self) -> list[RestTouch]:
         """What each finger feels, and then each support."""

@@ -25,16 +25,19 @@ def main() -> int:
         installed.install(options.package.resolve(), Path(home))
         # Only now: these import bpy, which finds its home when it is first imported.
         import bodies
+        import bowl_scene
         import bpy
         import finger_scenes
         import lifted_scene
         import scenes
         import stacked_scene
+        import table_scene
 
         bpy.context.preferences.filepaths.save_version = 0
         stored = {"Cube": bodies.cube_tets()}
         stored |= {name.title(): bodies.stored_tets(name) for name in ("drumstick", "hare")}
         stored |= finger_scenes.tets() | lifted_scene.tets() | stacked_scene.tets()
+        stored |= table_scene.tets() | bowl_scene.tets()
         for name, (make, finish) in {
             "cube": (lambda: [scenes.cube_scene()], None),
             "mouse": (lambda: [scenes.mouse_scene()], None),
@@ -46,6 +49,8 @@ def main() -> int:
             "fingertip": (finger_scenes.fingertip_scene, None),
             "lifted": (lifted_scene.lifted_scene, lifted_scene.bake_lift),
             "stacked": (stacked_scene.stacked_scene, stacked_scene.settle_stack),
+            "table": (table_scene.table_scene, table_scene.bake_press),
+            "bowl": (bowl_scene.bowl_scene, bowl_scene.settle_teddy),
             "large": (lambda: [scenes.hare_scene()], None),
         }.items():
             if options.only not in {None, name}:

@@ -27,6 +27,7 @@ core/body
 core/contact/near_field core/contact/tool core/contact
 core/rest
 core/pile
+core/fold
 core/grip
 core/shape/solid core/shape/paper core/shape/rotation_strain core/shape
 core/bake/settings.py core/bake/cost core/bake/preview core/bake
@@ -60,7 +61,7 @@ operators/rest
 operators/bake
 operators/press
 operators/stroke/answer operators/stroke
-operators/animation
+operators/animation/frames operators/animation
 operators/softness
 operators
 addon/translations addon/known_status.py
@@ -76,6 +77,7 @@ cli/body cli/scene cli/rest cli/press cli/softness cli/bake cli
 ROOMS_OF_RUST = """
 algebra
 body/compliance body
+fold
 drawn
 clock
 guardian
@@ -93,7 +95,7 @@ servo
 solid
 harness
 python/vectors.rs python/servo/settings.rs python/body python/device python/tool python/rest
-python/pile.rs python/servo python/harness python
+python/pile.rs python/fold.rs python/servo python/harness python
 lib.rs
 """.split()  # noqa: SIM905 - a level of the house is a line
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from ..body.soft_body import SoftBody
 from ..contact.near_field.contact_points import ContactPoints
 from ..contact.tool.pose import Pose
+from ..contact.tool.tools import Tool
+from ..contact.touches import ToolTouch
 from ..rest.rest import BodyTouch
 
 if TYPE_CHECKING:
@@ -39,6 +41,35 @@ class Felt:
         told = self.contacts
         which = np.flatnonzero((told["body"] == self.number) & (told["obstacle"] == obstacle))
         return self._touch(which, self._own(which), 1.0, pose)
+
+    def of_tool(self, obstacle: int, tool: Tool, pose: Pose) -> ToolTouch:
+        """The same in the body's own frame, as of a pinned body; how stiff it is nobody tells."""
+        told = self.contacts
+        which = np.flatnonzero((told["body"] == self.number) & (told["obstacle"] == obstacle))
+        touch, turn = self._touch(which, self._own(which), 1.0, pose), self.placement.rotation
+        points = told["point"][which]
+        order = np.argsort(points)
+        which, points = which[order], points[order]
+        places = self.points.positions[points]
+        moved = self.placement.to_tool(told["place"][which])
+        own = Pose(self.placement.to_tool(pose.position), turn.T @ pose.rotation)
+        normals = tool.distance(own.to_tool(moved))[1] @ own.rotation.T
+        return ToolTouch(
+            tool=tool,
+            pose=own,
+            force=touch.force @ turn,
+            torque=touch.torque @ turn,
+            stiffness=np.zeros((3, 3)),
+            points=points,
+            places=places,
+            displacements=moved - places,
+            normals=normals,
+            forces=told["force"][which] @ turn,
+            pushes=told["push"][which],
+            areas=self.points.areas[points],
+            nodes=touch.nodes,
+            nodal_forces=touch.nodal_forces,
+        )
 
     def of_body(self, other: int, pose: Pose) -> BodyTouch:
         """Touch with another body, whose points or this one's carry the contacts."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from palpate_servo import Pile as NativePile
 from palpate_servo import Tool as NativeTool
 
@@ -14,6 +15,7 @@ from ..contact.near_field.contact_points import ContactPoints
 from ..contact.tool.native_tool import native_shape, native_surface
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
+from ..contact.touches import ToolTouch
 from ..errors import PalpateError
 from ..rest.bearing_points import bearing_points
 from ..rest.prop import at
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
     from palpate_servo import RigidTool
 
 MOST_BODIES = 16
+# Ticks so short, in seconds, that nothing moves as a whole; at most so many until the sum of all
+# forces stays to this share.
+INSTANT, MOST_INSTANTS, STAYS = 1e-9, 30, 1e-6
 
 
 class Pile:
@@ -73,7 +78,9 @@ class Pile:
             )
         if not any(body.is_free for body, _ in bodies):
             raise PalpateError("all bodies are pinned; bake one without pins, which may move")
+        by_tools = settings.friction if settings.tool_friction is None else settings.tool_friction
         friction_checked(settings.friction)
+        friction_checked(by_tools)
         self.bodies = tuple(body for body, _ in bodies)
         self._points: list[ContactPoints] = []
         natives, laid = {}, []
@@ -88,11 +95,12 @@ class Pile:
                 free = body.mass, body.inertia.centre, body.moments, settings.drag_time
             laid.append((natives[id(body)], body.modulus(None), free, *at(placement)))
         rigid = [
-            *((native_shape(tool), *at(pose), settings.friction) for tool, pose in tools),
+            *((native_shape(tool), *at(pose), by_tools) for tool, pose in tools),
             *(_rigid(support, self._size()) for support in supports),
         ]
+        self._tools = tuple(tool for tool, _ in tools)
         self._led = [pose for _, pose in tools]
-        self._still = [support.pose for support in supports]
+        self._borne = [support.pose for support in supports]
         with rest_errors(ValueError):
             self._native = NativePile(
                 laid, rigid, gravity=settings.gravity, friction=settings.friction
@@ -107,6 +115,28 @@ class Pile:
         self._led = list(goals)
         for number, goal in enumerate(goals):
             self._native.lead(number, *at(goal))
+
+    def move_support(self, number: int, pose: Pose) -> None:
+        """Have a support go elsewhere from the next step on, as tools do."""
+        self._borne[number] = pose
+        self._native.lead(len(self._led) + number, *at(pose))
+
+    def come_in(self) -> None:
+        """Have what overlaps press each other while all stay where they are: so bodies that rested
+        before go on from there, instead of being driven apart.
+
+        Raises
+        ------
+        PalpateError
+            A force is no number.
+        """
+        before = np.inf
+        for _ in range(MOST_INSTANTS):
+            self.tick(INSTANT)
+            now = float(np.abs(self._native.contacts()["force"]).sum())
+            if abs(now - before) <= STAYS * now:
+                return
+            before = now
 
     def step(self, seconds: float = 1e-3) -> tuple[Rest, ...]:
         """Go on by a tick, in which each tool goes by a stride at most: where each body is then.
@@ -130,6 +160,10 @@ class Pile:
         with rest_errors(ValueError, RuntimeError):
             self._native.tick(seconds)
 
+    def hurry(self, seconds: float) -> None:
+        """The same, with all the work that it takes."""
+        self.tick(seconds)
+
     def settle(self) -> tuple[Rest, ...]:
         """Go on until tools are at their goals, wrenches on all bodies cancel and nothing changes.
 
@@ -142,13 +176,36 @@ class Pile:
             self._native.settle()
         return self.rest
 
+    def settle_on(self, ticks: int) -> bool:
+        """Go on with settling by so many ticks at most; whether all rest.
+
+        Raises
+        ------
+        PalpateError
+            As of :meth:`settle`.
+        """
+        with rest_errors(RuntimeError):
+            return self._native.settle_on(ticks)
+
+    def tool_touches(self, body: int) -> tuple[ToolTouch, ...]:
+        """Touches of the tools with a body, in its own frame."""
+        contacts = self._native.contacts()
+        felt = Felt(body, self.bodies[body], self._points[body], self.placements[body], contacts)
+        led = enumerate(zip(self._tools, self._led, strict=True))
+        return tuple(felt.of_tool(number, tool, pose) for number, (tool, pose) in led)
+
+    @property
+    def placements(self) -> list[Pose]:
+        """Where the frame of each body is in the world."""
+        native, count = self._native, len(self.bodies)
+        return [Pose(native.position(body), native.rotation(body)) for body in range(count)]
+
     @property
     def rest(self) -> tuple[Rest, ...]:
         """Where each body is now, and what touches it: tools, supports, and all other bodies by
         their numbers, its own among them, which never does.
         """
-        native, count = self._native, len(self.bodies)
-        placements = [Pose(native.position(body), native.rotation(body)) for body in range(count)]
+        native, count, placements = self._native, len(self.bodies), self.placements
         contacts = native.contacts()
         rests = []
         for number, body in enumerate(self.bodies):
@@ -161,7 +218,7 @@ class Pile:
                     tuple(felt.of_obstacle(tool, pose) for tool, pose in enumerate(self._led)),
                     tuple(
                         felt.of_obstacle(led + support, pose)
-                        for support, pose in enumerate(self._still)
+                        for support, pose in enumerate(self._borne)
                     ),
                     native.elastic(number),
                     native.time,

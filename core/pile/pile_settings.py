@@ -13,14 +13,15 @@ class PileSettings:
 
     Attributes
     ----------
-    friction : Coulomb's coefficient between bodies, and between tools and bodies; supports have
-        their own.
+    friction : Coulomb's coefficient between bodies; supports have their own.
+    tool_friction : that between tools and bodies; None for the same.
     gravity : m/s2, in the world.
     drag_time : seconds, as of one free body (``RestSettings``).
     spacing : metres between contact points of all bodies; None for one that follows the curvature.
     """
 
     friction: float = 0.5
+    tool_friction: float | None = None
     gravity: tuple[float, float, float] = EARTH
     drag_time: float = 0.05
     spacing: float | None = None

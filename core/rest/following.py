@@ -1,10 +1,11 @@
-"""A free body followed through a time in which what touches it moves, tick by tick."""
+"""Free bodies followed through a time in which what touches them moves, tick by tick."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,6 @@ from scipy.spatial.transform import Rotation
 
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
-from .resting import Resting
 
 # Seconds of a tick at most, each with as much work as one of the servo's: what is left of that is
 # done in the next.
@@ -21,9 +21,22 @@ TICK = 4e-3
 WAY_PER_RADIUS = 0.125
 
 
+class Followed(Protocol):
+    """A free body, or several that press each other."""
+
+    def lead(self, goals: Sequence[Pose]) -> None:
+        """Have the tools go to their goals from the next tick on."""
+
+    def move_support(self, number: int, pose: Pose) -> None:
+        """Have a support be elsewhere from the next tick on."""
+
+    def hurry(self, seconds: float) -> None:
+        """Go on by a tick, with as much work as there is time for while somebody waits."""
+
+
 @dataclass(frozen=True, eq=False)
 class Ways:
-    """Tools and supports of a body with the poses from which and to which they go, as many of each.
+    """Tools and supports of bodies with the poses from which and to which they go, as many of each.
 
     A support that does not move, as a floor, has the same pose twice.
     """
@@ -32,7 +45,7 @@ class Ways:
     supports: Sequence[tuple[Tool | None, Pose, Pose]]
 
 
-def follow(resting: Resting, ways: Ways, seconds: float) -> None:
+def follow(bodies: Followed, ways: Ways, seconds: float) -> None:
     """Let a time pass in which all go straight along their ways, without a pause.
 
     Raises
@@ -43,11 +56,11 @@ def follow(resting: Resting, ways: Ways, seconds: float) -> None:
     ticks = _ticks(ways, seconds)
     for tick in range(1, ticks + 1):
         share = tick / ticks
-        resting.lead([between(start, end, share) for _, start, end in ways.tools])
+        bodies.lead([between(start, end, share) for _, start, end in ways.tools])
         for number, (_, start, end) in enumerate(ways.supports):
             if start is not end:
-                resting.move_support(number, between(start, end, share))
-        resting.tick(seconds / ticks, hurried=True)
+                bodies.move_support(number, between(start, end, share))
+        bodies.hurry(seconds / ticks)
 
 
 def between(start: Pose, end: Pose, share: float) -> Pose:

@@ -148,6 +148,10 @@ class Resting:
         with rest_errors(ValueError, RuntimeError):
             self._native.tick(seconds, hurried=hurried)
 
+    def hurry(self, seconds: float) -> None:
+        """The same tick, hurried."""
+        self.tick(seconds, hurried=True)
+
     def settle(self) -> Rest:
         """Go on until tools are at their goals, wrenches cancel and nothing changes any more.
 
@@ -159,6 +163,20 @@ class Resting:
         with rest_errors(RuntimeError):
             self._native.settle()
         return self._felt()
+
+    def settle_on(self, ticks: int) -> bool:
+        """Go on with settling by so many ticks at most; whether it rests.
+
+        Raises
+        ------
+        PalpateError
+            As of :meth:`settle`.
+        """
+        with rest_errors(RuntimeError):
+            rests = self._native.settle_on(ticks)
+        if rests:
+            self._felt()
+        return rests
 
     def _felt(self) -> Rest:
         for number, told in enumerate(self._native.touches()):

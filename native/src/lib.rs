@@ -17,6 +17,7 @@ pub mod device;
 pub mod drawn;
 pub mod engine;
 pub mod fingers;
+pub mod fold;
 pub mod guardian;
 #[cfg(feature = "harness")]
 pub mod harness;

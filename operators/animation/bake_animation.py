@@ -3,42 +3,30 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import bpy
 
 from ...core.errors import PalpateError
 from ...core.files.atomic_file import refuse_unwritable
-from ...core.files.point_cache import CacheSize
 from ...core.sentence import Sentence
 from ..imprint import kept_imprint
-from ..imprint.surface_imprint import yielding_of
-from ..layer import place_marks, stack
-from ..lying.supports import supports_of
+from ..lying.together import together
 from ..object.drawn_body import DrawnBody, open_body
-from ..played import mesh_cache
 from ..press.modal_press import Pressing
 from ..reporting.translated import reported, shown
 from ..reporting.wait_cursor import wait_cursor
-from ..rest.keyed import key_places, refuse_others
-from ..scene.body_frame import BodyFrame
+from ..rest.keyed import refuse_others
 from ..scene.modal_progress import ModalProgress
-from ..shape.drawn_shape import closing_shape
 from ..traction.drawn_traction import patches_of, tractions_of
-from . import frame_keys, live_pressers
+from . import frame_keys
+from .all_frames import all_frames
 from .force_table import FrameRows
-from .keeping import ITEMS, KEEPERS, Baking, collected
-from .lying_frames import LyingFrames
-from .pressed_frames import (
-    AnimatedPress,
-    Following,
-    PressedFrame,
-    frame_kept,
-    imprinted,
-    press_frames,
-)
+from .frames.piled_frames import refuse_moving
+from .frames.pressed_frames import PressedFrame
+from .keeping import ITEMS, Baking, collected
+from .keeping_all import keep_all
 
 MOST_KEYS = 2000
 # Seconds of pressing between two looks at the keyboard.
@@ -160,68 +148,43 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         if self.keep == "KEYS" and not self.current_only:
             frame_keys.refuse(thing)
         drawn = open_body(thing, scene)
+        things = [thing]
         if drawn.body.is_free:
-            self._refuse_free(thing)
+            things = together(thing, context.selected_objects)
+            self._refuse_free(things)
+        opened = [drawn, *(open_body(other, scene) for other in things[1:])]
         rows = FrameRows(drawn, scene.render.fps / scene.render.fps_base)
-        pressed = self._press(thing, scene, drawn, frames, rows)
+        pressed = all_frames(things, scene, opened, frames, self.step, rows, self._warn)
         if self.current_only:
-            yield from self._keep_last(thing, scene, drawn, pressed, len(frames))
+            yield from self._keep_last(
+                thing, scene, drawn, (here for (here,) in pressed), len(frames)
+            )
         else:
-            size = CacheSize(len(drawn.rest) // 3, len(frames), frames[0], self.step)
-            places: list[BodyFrame] = []
-            pressed = _noting(pressed, places)
-            yield from KEEPERS[self.keep](thing, scene, drawn, pressed, size)
-            live_pressers.end(thing)
-            if places:
-                floor = supports_of(thing, drawn, context.evaluated_depsgraph_get()).floor
-                key_places(thing, frames, places, floor)
-                scene.frame_set(scene.frame_current)
+            yield from keep_all(things, scene, opened, pressed, self.keep, frames, self.step)
+            self._told = Sentence(
+                "{count} frames, up to {largest:.3g} N",
+                count=len(frames),
+                largest=rows.largest_force,
+            )
         if table is not None:
             rows.write(table)
 
-    def _press(
-        self,
-        thing: bpy.types.Object,
-        scene: bpy.types.Scene,
-        drawn: DrawnBody,
-        frames: list[int],
-        rows: FrameRows,
-    ) -> Iterator[PressedFrame]:
-        touched, rate = False, scene.render.fps / scene.render.fps_base
-        with (
-            live_pressers.paused(),
-            _met_as_seen(thing),
-            frame_kept(scene),
-            closing_shape(thing, drawn) as shape,
-        ):
-            law = yielding_of(thing, drawn.frame)
-            seconds = self.step / rate
-            following: Following = AnimatedPress(thing, drawn, shape)
-            if drawn.body.is_free:
-                following = LyingFrames(thing, drawn, seconds)
-            pressed = press_frames(scene, frames, following)
-            for here in imprinted(pressed, law, drawn, rate):
-                rows.add(here)
-                touched |= here.moved is not None
-                yield here
-            if shape.notice:
-                self.report({"WARNING"}, reported(shape.notice))
-        if not touched:
-            raise PalpateError(
-                "The tool touches nothing in these frames; move its keyframes to the surface"
-            )
-        self._told = Sentence(
-            "{count} frames, up to {largest:.3g} N", count=len(frames), largest=rows.largest_force
-        )
+    def _warn(self, remark: str) -> None:
+        self.report({"WARNING"}, reported(remark))
 
-    def _refuse_free(self, thing: bpy.types.Object) -> None:
-        """Refuse what cannot be kept of an object that nobody holds."""
-        refuse_others(thing)
+    def _refuse_free(self, things: Sequence[bpy.types.Object]) -> None:
+        """Refuse what cannot be kept of objects that nobody holds."""
+        refuse_moving(things)
+        for thing in things:
+            if thing.palpate.pin_mode == "NONE":
+                refuse_others(thing)
+            if self.keep == "KEYS":
+                frame_keys.refuse(thing)
         if self.current_only or self.keep not in {"CACHE", "KEYS"}:
             raise PalpateError(
                 "{name}: nothing pins it, and its animation is kept as Mesh Cache or Shape Keys "
                 "with keyframes of its place; choose one of these",
-                name=thing.name,
+                name=things[0].name,
             )
 
     def _keep_last(
@@ -262,25 +225,6 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
                 most=MOST_KEYS,
             )
         return frames
-
-
-def _noting(pressed: Iterator[PressedFrame], places: list[BodyFrame]) -> Iterator[PressedFrame]:
-    """The frames, once the place of an object that nobody holds is noted."""
-    for here in pressed:
-        if here.lies is not None:
-            places.append(here.lies)
-        yield here
-
-
-@contextmanager
-def _met_as_seen(thing: bpy.types.Object) -> Iterator[None]:
-    """The body is met where it is seen, but for what an earlier bake or live pressers show."""
-    if frame_keys.plays(thing):
-        yield
-        return
-    names = mesh_cache.MODIFIER_NAME, live_pressers.LAYER_NAME
-    with stack.silent(thing, *names), place_marks.marked(thing):
-        yield
 
 
 classes = (PALPATE_OT_press_frames,)

@@ -13,7 +13,7 @@ from ...core.contact.touches import ToolTouch, Touch
 from ...core.files.atomic_file import atomic_file
 from ..object.drawn_body import DrawnBody
 from ..tool.tool_depth import pressed_depth
-from .pressed_frames import PressedFrame
+from .frames.pressed_frames import PressedFrame
 
 COLUMNS = (
     "frame",

@@ -9,7 +9,7 @@ from ..kept.layer_operator import shared_refusal
 from ..layer import layers
 from ..object.drawn_body import DrawnBody
 from ..scene import curves
-from .pressed_frames import PressedFrame
+from .frames.pressed_frames import PressedFrame
 
 FRAME_NAME = "Press at"
 

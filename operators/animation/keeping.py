@@ -16,7 +16,7 @@ from ..traction.drawn_traction import patches_of, tractions_of
 from ..traction.frame_tractions import FrameTractions, frame_tractions
 from . import exchange_file, frame_keys, live_pressers
 from .exchange_file import Exchange
-from .pressed_frames import PressedFrame
+from .frames.pressed_frames import PressedFrame
 
 Baking = Generator[float, None, None]
 """Share of the frames that are pressed, after each."""

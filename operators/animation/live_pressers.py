@@ -35,7 +35,7 @@ from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
 from . import failures, frame_keys
 from .failures import Attempt
-from .pressed_frames import AnimatedPress
+from .frames.pressed_frames import AnimatedPress
 
 LAYER_NAME = layers.PRESSERS_NAME
 

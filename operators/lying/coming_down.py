@@ -6,9 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
+from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
+from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
-from ..object.drawn_body import open_body
+from ...core.rest.rest import Rest
+from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from . import rest_layer
 from .free_body import LANDING, FreeBody, Lying, lie, supports_under
@@ -32,6 +38,43 @@ class Alone:
         """Height of the floor, metres; None without one."""
         return self.free.supports.floor
 
+    @property
+    def rest(self) -> Rest:
+        """Where it is now, and what touches it."""
+        return self.free.resting.rest
+
+    @property
+    def young_modulus(self) -> float:
+        """Pascal."""
+        return self.free.resting.young_modulus
+
+    @property
+    def placements(self) -> list[Pose]:
+        """Where its frame is in the world."""
+        return [self.free.resting.rest.placement]
+
+    def touched_by(
+        self, tools: Sequence[tuple[Tool, Pose]], placements: Sequence[Pose] | None = None
+    ) -> Alone:
+        """The same where it is, or at another placement, pressed by tools whose poses are in the
+        world.
+
+        Raises
+        ------
+        PalpateError
+            Too many of them.
+        """
+        (placement,) = placements or self.placements
+        return Alone(self.free.touched_by(tools, placement))
+
+    def lead(self, goals: Sequence[Pose]) -> None:
+        """Have the tools go to their goals."""
+        self.free.resting.lead(goals)
+
+    def touches(self) -> tuple[ToolTouch, ...]:
+        """Of the tools, in the body's own axes."""
+        return self.free.resting.tool_touches()
+
     def tick(self, seconds: float) -> None:
         """Go on by a tick.
 
@@ -40,11 +83,11 @@ class Alone:
         PalpateError
             A force is no number.
         """
-        self.free.resting.tick(seconds, hurried=True)
+        self.free.resting.hurry(seconds)
 
-    def now(self) -> list[Lying]:
-        """Where it is now."""
-        return [self.free.now()]
+    def now(self, bent: NDArray[np.float64] | None = None) -> list[Lying]:
+        """Where it is now; ``bent`` (n, 3) displaces its free surface nodes besides, metres."""
+        return [self.free.now(bent)]
 
     def settle(self) -> list[Lying]:
         """Where it comes to rest.
@@ -54,7 +97,24 @@ class Alone:
         PalpateError
             It does not.
         """
-        return [self.free.come_down()]
+        self._drop()
+        return [self.free.settle()]
+
+    def settle_on(self, ticks: int) -> bool:
+        """Go on with that by so many ticks at most; whether it rests.
+
+        Raises
+        ------
+        PalpateError
+            It does not.
+        """
+        self._drop()
+        return self.free.resting.settle_on(ticks)
+
+    def _drop(self) -> None:
+        """Leave out a long way down, where no hand has it."""
+        if not self.rest.tools:
+            self.free.drop(LANDING * self.size)
 
 
 def settle(things: Sequence[bpy.types.Object], graph: bpy.types.Depsgraph) -> list[Lying]:
@@ -83,13 +143,29 @@ def begun(
     PalpateError
         One is pinned or cannot move by itself, or nothing bears it.
     """
+    opened = [open_body(thing, graph.scene) for thing in things]
+    return lying_bodies(things, opened, graph, height)
+
+
+def lying_bodies(
+    things: Sequence[bpy.types.Object],
+    opened: Sequence[DrawnBody],
+    graph: bpy.types.Depsgraph,
+    height: float,
+) -> Alone | FreePile:
+    """The same of bodies that are open.
+
+    Raises
+    ------
+    PalpateError
+        As of :func:`begun`.
+    """
     for thing in things:
         if thing.palpate.pin_mode == "NONE":
             refuse_played(thing)
     if len(things) > 1:
-        return piled(things, graph, height)
-    (thing,) = things
-    drawn = open_body(thing, graph.scene)
+        return piled(things, opened, graph, height)
+    (thing,), (drawn,) = things, opened
     free = lie(thing, drawn, supports_under(thing, drawn, graph))
     free.drop(height * drawn.size)
     return Alone(free)

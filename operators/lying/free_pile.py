@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ...core.body.soft_body import SoftBody
 from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tool_dent import PressingTool
+from ...core.contact.tool.tools import Tool
+from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
 from ...core.pile.pile import Pile
 from ...core.pile.pile_settings import PileSettings
 from ...core.rest.rest import Rest
 from ...core.rest.support import Floor, Support
-from ..object.drawn_body import DrawnBody, open_body
-from .free_body import LANDING, Lying, above, scene_gravity, supports_under
+from ..object.drawn_body import DrawnBody
+from .free_body import Lying, above, scene_gravity, supports_under
 from .placement import frame_at, placement_of
 from .supports import Supports
 
@@ -24,17 +30,72 @@ from .supports import Supports
 class FreePile:
     """Bodies of objects that press each other; made by :func:`piled`.
 
-    ``floor`` is the height of what they rest on, metres, None without one.
+    Attributes
+    ----------
+    drawn : the bodies, and their objects as they were at first.
+    supports : what all rest on.
+    pile : their equilibrium.
     """
 
     drawn: tuple[DrawnBody, ...]
-    floor: float | None
+    supports: Supports
     pile: Pile
+    _bodies: tuple[SoftBody, ...]
+    _settings: PileSettings
 
     @property
     def size(self) -> float:
         """Diagonal of the smallest body, metres."""
         return min(drawn.size for drawn in self.drawn)
+
+    @property
+    def floor(self) -> float | None:
+        """Height of what they rest on, metres; None without one."""
+        return self.supports.floor
+
+    @property
+    def rest(self) -> Rest:
+        """Where the first one is now, and what touches it."""
+        return self.pile.rest[0]
+
+    @property
+    def young_modulus(self) -> float:
+        """Of the first one, pascal."""
+        return self._bodies[0].young_modulus
+
+    @property
+    def placements(self) -> list[Pose]:
+        """Where each body's frame is in the world."""
+        return self.pile.placements
+
+    def touched_by(
+        self,
+        tools: Sequence[tuple[Tool, Pose]],
+        placements: Sequence[Pose] | None = None,
+        supports: Supports | None = None,
+    ) -> FreePile:
+        """The same bodies where they are, or at other placements, pressed by tools whose poses are
+        in the world, perhaps on other supports.
+
+        Raises
+        ------
+        PalpateError
+            A force is no number.
+        """
+        borne = self.supports if supports is None else supports
+        here = self.placements if placements is None else placements
+        laid = list(zip(self._bodies, here, strict=True))
+        pile = Pile(laid, borne.all, tools, settings=self._settings)
+        pile.come_in()
+        return replace(self, supports=borne, pile=pile)
+
+    def lead(self, goals: Sequence[Pose]) -> None:
+        """Have the tools go to their goals."""
+        self.pile.lead(goals)
+
+    def touches(self) -> tuple[ToolTouch, ...]:
+        """Of the tools with the first one, in its own axes."""
+        return self.pile.tool_touches(0)
 
     def tick(self, seconds: float) -> None:
         """Go on by a tick.
@@ -54,88 +115,132 @@ class FreePile:
         PalpateError
             They do not.
         """
-        return self._lying(self.pile.settle())
+        self.pile.settle()
+        return self.now()
 
-    def now(self) -> list[Lying]:
-        """Where they are now."""
-        return self._lying(self.pile.rest)
+    def settle_on(self, ticks: int) -> bool:
+        """Go on with that by so many ticks at most; whether all rest.
 
-    def _lying(self, rests: Sequence[Rest]) -> list[Lying]:
+        Raises
+        ------
+        PalpateError
+            They do not.
+        """
+        return self.pile.settle_on(ticks)
+
+    def now(self, bent: NDArray[np.float64] | None = None) -> list[Lying]:
+        """Where they are now; ``bent`` (n, 3) displaces the free surface nodes of the first one
+        besides, metres.
+        """
+        bends = [bent, *[None] * (len(self.drawn) - 1)]
         return [
-            _lying(drawn, rest, self.floor) for drawn, rest in zip(self.drawn, rests, strict=True)
+            self._lying(number, rest, one)
+            for number, (rest, one) in enumerate(zip(self.pile.rest, bends, strict=True))
         ]
+
+    def _lying(self, number: int, rest: Rest, bent: NDArray[np.float64] | None) -> Lying:
+        drawn = self.drawn[number]
+        frame = frame_at(drawn.frame, rest.placement) if drawn.body.is_free else drawn.frame
+        touches = self.pile.tool_touches(number)
+        displacements = rest.displacements()
+        if bent is not None:
+            displacements = displacements + bent
+        pressing = [PressingTool(one.tool, one.pose, one.force) for one in touches if one.touching]
+        moved = drawn.drawn_displacement(displacements, pressing)
+        return Lying(frame, touches, displacements, above(drawn, frame, moved, self.floor), rest)
 
 
 def piled(
-    things: Sequence[bpy.types.Object], graph: bpy.types.Depsgraph, height: float = LANDING
+    things: Sequence[bpy.types.Object],
+    opened: Sequence[DrawnBody],
+    graph: bpy.types.Depsgraph,
+    height: float | None = None,
 ) -> FreePile:
     """Bodies of objects where these are, with the floor and colliders of all; where nothing is
-    near beneath, down at a ``height`` over it, a share of the smallest one's size.
+    near beneath, down at a ``height`` over it, a share of the smallest one's size, if there is one.
 
-    Friction between them is the first one's; the floor the lowest of theirs.
+    Friction between them is the first one's, and so is that of tools; the floor the lowest of
+    theirs.
 
     Raises
     ------
     PalpateError
         One cannot move by itself, nothing bears any, all are pinned, or they are too many.
     """
-    opened = [(thing, open_body(thing, graph.scene)) for thing in things]
-    free = [(thing, drawn) for thing, drawn in opened if drawn.body.is_free]
-    found = [supports_under(thing, drawn, graph, besides=things) for thing, drawn in free]
+    supports = supports_of_all(things, opened, graph)
+    free = [drawn for drawn in opened if drawn.body.is_free]
+    gravity = scene_gravity(graph.scene)
+    down = 0.0
+    # A pinned one may be on the way.
+    is_clear = len(free) == len(opened) and gravity[:2] == (0.0, 0.0) and gravity[2] < 0.0
+    if height is not None and is_clear:
+        size = min(drawn.size for drawn in opened)
+        down = _way_down(free, supports, size, height * size)
+    bodies, placements = [], []
+    for thing, drawn in zip(things, opened, strict=True):
+        placement = placement_of(drawn.frame)
+        if drawn.body.is_free:
+            placement = replace(placement, position=placement.position - [0.0, 0.0, down])
+        placements.append(placement)
+        chosen = thing.palpate
+        bodies.append(
+            replace(drawn.body, young_modulus=chosen.young_modulus, density=chosen.density)
+        )
+    first = things[0].palpate
+    settings = PileSettings(
+        friction=first.rest_friction, tool_friction=first.static_friction, gravity=gravity
+    )
+    pile = Pile(list(zip(bodies, placements, strict=True)), supports.all, settings=settings)
+    pile.come_in()
+    return FreePile(tuple(opened), supports, pile, tuple(bodies), settings)
+
+
+def supports_of_all(
+    things: Sequence[bpy.types.Object], opened: Sequence[DrawnBody], graph: bpy.types.Depsgraph
+) -> Supports:
+    """What objects rest on as a graph has it, besides each other.
+
+    Raises
+    ------
+    PalpateError
+        One cannot move by itself, or nothing bears any.
+    """
+    found = [
+        supports_under(thing, drawn, graph, besides=things)
+        for thing, drawn in zip(things, opened, strict=True)
+        if drawn.body.is_free
+    ]
     supports = _all_of(found)
-    if not supports.all and len(free) == len(opened):
+    if not supports.all and len(found) == len(opened):
         raise PalpateError(
             "{name}: there is nothing under it; choose a floor or colliders under Rests On",
             name=things[0].name,
         )
-    gravity = scene_gravity(graph.scene)
-    size = min(drawn.size for _, drawn in opened)
-    # A pinned one may be on the way.
-    is_clear = len(free) == len(opened) and gravity[:2] == (0.0, 0.0) and gravity[2] < 0.0
-    down = _way_down(free, supports, size, height * size) if is_clear else 0.0
-    laid = []
-    for thing, drawn in opened:
-        placement = placement_of(drawn.frame)
-        if drawn.body.is_free:
-            placement = replace(placement, position=placement.position - [0.0, 0.0, down])
-        body = replace(
-            drawn.body, young_modulus=thing.palpate.young_modulus, density=thing.palpate.density
-        )
-        laid.append((body, placement))
-    settings = PileSettings(friction=things[0].palpate.rest_friction, gravity=gravity)
-    pile = Pile(laid, supports.all, settings=settings)
-    return FreePile(tuple(drawn for _, drawn in opened), supports.floor, pile)
+    return supports
 
 
 def _all_of(found: Sequence[Supports]) -> Supports:
     """Colliders of all, each once, and the lowest of their floors."""
     floors = [one for each in found for one in each.all if isinstance(one, Floor)]
     lowest = min(floors, key=lambda floor: floor.height, default=None)
-    fixed: dict[str, Support] = {}
+    fixed: dict[tuple[str, int], Support] = {}
     for each in found:
+        # The parts of a hollow one have its name.
+        parts: Counter[str] = Counter()
         for one in each.all:
             if isinstance(one, Support):
-                fixed.setdefault(one.tool.name, one)
+                name = one.tool.name
+                fixed.setdefault((name, parts[name]), one)
+                parts[name] += 1
     borne = (*(() if lowest is None else (lowest,)), *fixed.values())
     return Supports(borne, None if lowest is None else lowest.height)
 
 
-def _way_down(
-    free: Sequence[tuple[bpy.types.Object, DrawnBody]],
-    supports: Supports,
-    size: float,
-    height: float,
-) -> float:
+def _way_down(free: Sequence[DrawnBody], supports: Supports, size: float, height: float) -> float:
     """How far all free ones may go down at once before one is at a height over what bears it."""
-    placed = [(drawn, placement_of(drawn.frame)) for _, drawn in free]
-    gaps = [supports.gap_beneath(place.to_world(drawn.surface_nodes)) for drawn, place in placed]
+    gaps = [
+        supports.gap_beneath(placement_of(drawn.frame).to_world(drawn.surface_nodes))
+        for drawn in free
+    ]
     gap = min(gaps, default=0.0)
     return gap - height if max(size, height) < gap < np.inf else 0.0
-
-
-def _lying(drawn: DrawnBody, rest: Rest, floor: float | None) -> Lying:
-    placement: Pose = rest.placement
-    frame = frame_at(drawn.frame, placement) if drawn.body.is_free else drawn.frame
-    displacements = rest.displacements()
-    moved = drawn.drawn_displacement(displacements)
-    return Lying(frame, (), displacements, above(drawn, frame, moved, floor), rest)

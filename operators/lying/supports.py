@@ -82,6 +82,11 @@ def supports_of(
     return Supports(tuple(found), height)
 
 
+def floor_of(thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph) -> float | None:
+    """Height of an object's floor, metres; None where there is none."""
+    return _floor_height(thing, drawn, metres_per_unit(graph.scene))
+
+
 def _floor_height(thing: bpy.types.Object, drawn: DrawnBody, metres: float) -> float | None:
     """Height of the floor, metres: as chosen, as found before, or under the object; None where
     there is none.

@@ -17,6 +17,7 @@ from ...core.body.soft_body import SoftBody
 from ...core.contact.place import nearest_place
 from ...core.contact.tool.tool_dent import PressingTool, kept_out
 from ...core.errors import PalpateError
+from ...core.fold.folds import Folds
 from ..carrier import body_source
 from ..layer import layers
 from ..layer.imprints import imprint_of
@@ -50,6 +51,7 @@ class DrawnBody:
     rest : flat float32 (3 p,), the drawn vertices at rest, local units.
     imprint : flat float32 (3 p,), what stayed of earlier presses, local units.
     frame : between local units, metres and the world.
+    folds : what keeps its surface out of itself.
     file : of the body, next to which its tables are stored; None without.
     """
 
@@ -59,6 +61,7 @@ class DrawnBody:
     rest: NDArray[np.float32]
     imprint: NDArray[np.float32]
     frame: BodyFrame
+    folds: Folds
     file: Path | None = None
 
     @property
@@ -100,9 +103,19 @@ class DrawnBody:
         into: NDArray[np.float32] | None = None,
     ) -> NDArray[np.float32]:
         """Flat displacements (3 p,) of the drawn vertices, local units, by those of the free
-        surface nodes (n, 3), metres; no vertex ends within the tools. They are written ``into`` an
-        array like ``rest``, or a new one.
+        surface nodes (n, 3), metres; the surface does not pass through itself by what is seen, and
+        no vertex ends within the tools. They are written ``into`` an array like ``rest``, or a new
+        one.
         """
+        return self.displaced(self.folds.opened(displacements), tools, into)
+
+    def displaced(
+        self,
+        displacements: Array,
+        tools: Sequence[PressingTool] = (),
+        into: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.float32]:
+        """The same of a surface that may pass through itself, which is linear without tools."""
         into_local = np.linalg.inv(self.frame.metric)
         shaped = None if into is None else into.reshape(-1, 3)
         # The map takes units as they are; there are far fewer nodes than vertices.
@@ -202,13 +215,15 @@ def open_body(
     rest = drawn_surface.rest_coordinates(layers.drawn_mesh(thing))
     places = surface.frame.body_from_local(rest.reshape(-1, 3).astype(np.float64))
     imprint = imprint_of(thing)
+    found = _imprinted(body, thing, places, imprint @ surface.frame.metric)
     return DrawnBody(
-        body=_imprinted(body, thing, places, imprint @ surface.frame.metric),
+        body=found,
         at_rest=body,
         hung=hung_on(body, places),
         rest=rest,
         imprint=imprint.ravel(),
         frame=surface.frame,
+        folds=Folds(found),
         file=body_store.locate(thing),
     )
 

@@ -70,7 +70,7 @@ def answers(drawn: DrawnBody, rest: Array, radius: float) -> NDArray[np.float32]
     axes = drawn.frame.body_from_local(np.eye(3))
     axes *= radius / np.linalg.norm(axes, axis=1, keepdims=True)
     return np.array(
-        [drawn.drawn_displacement(held.displacements @ moved(axis)).reshape(-1, 3) for axis in axes]
+        [drawn.displaced(held.displacements @ moved(axis)).reshape(-1, 3) for axis in axes]
     )
 
 

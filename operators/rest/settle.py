@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 
 import bpy
@@ -26,9 +27,11 @@ from ..session import press_session
 PACE, TICKS, TICK = 1.0 / 30.0, 10, 4e-3
 # At most so many times its size over what bears it an object is seen to fall.
 SEEN_FALLING = 1.0
-# It lies still when it goes by less than this share of its size in so many pictures; then all is
-# brought to rest at once, and after so many pictures anyhow.
+# It lies still when it goes by less than this share of its size in so many pictures; then it is
+# brought to rest exactly, and after so many pictures anyhow, so many ticks at a time between two
+# looks at the clock.
 STILL, STILL_PICTURES, MOST_PICTURES = 1e-4, 5, 300
+SETTLING_TICKS = 5
 VIEW_KEYS = {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "TRACKPADPAN", "TRACKPADZOOM"}
 
 
@@ -47,6 +50,7 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
     _coming: Alone | FreePile
     _pictures: int
     _still: int
+    _is_still: bool
     _place: NDArray[np.float64]
 
     @classmethod
@@ -94,7 +98,7 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
             self._coming = begun(things, context.evaluated_depsgraph_get(), SEEN_FALLING)
         self._handles = [ObjectHandle.of(thing) for thing in things]
         self._before = [Before.of(thing) for thing in things]
-        self._pictures, self._still = 0, 0
+        self._pictures, self._still, self._is_still = 0, 0, False
         self._place = np.zeros((len(things), 4, 3))
         self._stay = ModalStay()
         self._stay.begin(self, context, PACE)
@@ -104,16 +108,17 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
     def _go_on(self, context: bpy.types.Context) -> bool:
         """Show the objects a picture later; whether all rest."""
         things, coming = [self._found(handle) for handle in self._handles], self._coming
-        for _ in range(TICKS):
-            coming.tick(TICK)
+        is_done = self._is_still and _settled(coming)
+        if not self._is_still:
+            for _ in range(TICKS):
+                coming.tick(TICK)
         lying = coming.now()
         placements = [one.rest.placement for one in lying]
         here = np.array([[one.position / coming.size, *one.rotation] for one in placements])
         self._still = self._still + 1 if np.abs(here - self._place).max() < STILL else 0
         self._place, self._pictures = here, self._pictures + 1
-        is_done = self._still == STILL_PICTURES or self._pictures == MOST_PICTURES
-        if is_done:
-            lying = coming.settle()
+        is_long = self._pictures >= MOST_PICTURES
+        self._is_still = self._is_still or is_long or self._still == STILL_PICTURES
         show(things, lying, coming.floor)
         if is_done:
             self._stay.end(context)
@@ -148,6 +153,15 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
                 force=strongest,
             ),
         )
+
+
+def _settled(coming: Alone | FreePile) -> bool:
+    """Go on to exact rest for as long as a picture stands; whether all rest."""
+    end = time.monotonic() + PACE
+    while time.monotonic() < end:
+        if coming.settle_on(SETTLING_TICKS):
+            return True
+    return False
 
 
 classes = (PALPATE_OT_settle,)

@@ -7,15 +7,16 @@ import bpy
 from ..layer import live_layer
 from ..lying import rest_layer
 from ..lying.laid import move
-from ..object.drawn_body import DrawnBody
 from ..traction import layer_traction
 from ..traction.drawn_traction import patches_of, tractions_of
+from .answer.free_stroke import FreeStroke
+from .answer.stroke import Stroke
 from .answer.stroked import Stroked
 
 
-def draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
+def draw(thing: bpy.types.Object, stroke: Stroke | FreeStroke, stroked: Stroked) -> None:
     """Write the displacement of a stroke into the live layer, beside what shows how it rests."""
-    lying = stroked.lying
+    drawn, lying = stroke.drawn, stroked.lying
     if lying is None:
         moved = drawn.drawn_displacement(stroked.displacements, stroked.tools, drawn.canvas)
         live_layer.write(thing, moved)
@@ -23,4 +24,5 @@ def draw(thing: bpy.types.Object, drawn: DrawnBody, stroked: Stroked) -> None:
         moved = lying.moved
         live_layer.write(thing, moved - rest_layer.shown(thing, len(moved) // 3))
         move(thing, lying.frame)
+    stroke.follow(stroked)
     layer_traction.write(thing, tractions_of(thing, drawn, moved, patches_of(stroked.touches)))

@@ -84,7 +84,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             asked, stroked = self._stroke.stroked(wanted)
             if stroked.springs_back:
                 asked, stroked = self._stroke.ended(asked, stroked)
-            draw(thing, self._stroke.drawn, stroked)
+            draw(thing, self._stroke, stroked)
             self._keep(scene, thing, asked, stroked)
             if asked is not wanted:
                 self.tell(asked, self._frame, self._touched.turn)
@@ -227,7 +227,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             # As far as it went; back from there the stroke goes on.
             problem = f"   {shown(refused)}"
         asked, stroked = self._last
-        draw(thing, self._stroke.drawn, stroked)
+        draw(thing, self._stroke, stroked)
         text = f"{stroke_words.figures(scene, asked, stroked)}{problem}"
         if self._typed.text:
             text = f"[{self._typed.text}|]   {text}"
@@ -258,7 +258,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         figures = stroke_words.figures(scene, asked, stroked)
         if stroked.springs_back and stroked.lying is not None:
             live_layer.remove(thing)
-            self._stroke.leave(thing, stroked.lying)
+            self._stroke.leave(thing, stroked)
             self.report({"INFO"}, reported("{figures}, let go and at rest", figures=figures))
             return
         name = kept_imprint.keep(thing, scene, self._stroke.drawn.frame)
@@ -268,7 +268,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         """What came of the stroke once all is at rest."""
         asked, stroked = self._stroke.ended(*self._last)
         if stroked is not self._last[1]:
-            draw(thing, self._stroke.drawn, stroked)
+            draw(thing, self._stroke, stroked)
         return asked, stroked
 
     def _leave(self, context: bpy.types.Context, *, give_up: bool) -> None:

@@ -63,6 +63,17 @@ impl Feature {
 impl Tree {
     /// First inward and outward crossing of the segment from `start` to `end`.
     pub fn sweep(&self, body: &Body, start: DVec3, end: DVec3, skip: &[Feature]) -> Sweep {
+        self.sweep_faces((body.faces(), &body.triangles), start, end, skip)
+    }
+
+    /// The same of triangles that may have moved, with the nodes of each.
+    pub(crate) fn sweep_faces(
+        &self,
+        (faces, triangles): (&[Face], &[[u32; 3]]),
+        start: DVec3,
+        end: DVec3,
+        skip: &[Feature],
+    ) -> Sweep {
         let mut found = Sweep::default();
         let low = start.min(end);
         let high = start.max(end);
@@ -86,8 +97,8 @@ impl Tree {
             if node.count > 0 {
                 let first = node.index as usize;
                 for &t in &self.order[first..first + node.count as usize] {
-                    if !skip.iter().any(|f| f.is_in(&body.triangles[t as usize])) {
-                        found.add(body.face(t), t, start, end);
+                    if !skip.iter().any(|f| f.is_in(&triangles[t as usize])) {
+                        found.add(&faces[t as usize], t, start, end);
                     }
                 }
             } else {

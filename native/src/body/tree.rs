@@ -19,7 +19,7 @@ pub(super) struct Node {
 }
 
 /// A binary tree of axis-aligned boxes.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) order: Vec<u32>,
@@ -98,6 +98,52 @@ impl Tree {
             alpha: best.2,
             point: best.3,
             distance: best.0.sqrt(),
+        }
+    }
+
+    /// Has the boxes fit around triangles that have moved.
+    pub(crate) fn refit(&mut self, faces: &[Face]) {
+        // Children stand behind their parents.
+        for index in (0..self.nodes.len()).rev() {
+            let node = self.nodes[index];
+            let [low, high] = if node.count > 0 {
+                let first = node.index as usize;
+                let own = &self.order[first..first + node.count as usize];
+                let corners = own.iter().flat_map(|&t| faces[t as usize].corners);
+                corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], at| {
+                    [low.min(at), high.max(at)]
+                })
+            } else {
+                let [a, b] = [index + 1, node.index as usize].map(|child| self.nodes[child]);
+                [a.low.min(b.low), a.high.max(b.high)]
+            };
+            (self.nodes[index].low, self.nodes[index].high) = (low, high);
+        }
+        self.reach = (self.nodes[0].low.abs())
+            .max(self.nodes[0].high.abs())
+            .max_element();
+    }
+
+    /// Visits triangles whose boxes are within a reach of `p`, which each visit may lessen.
+    pub(crate) fn visit_within(&self, p: DVec3, reach: f64, mut visit: impl FnMut(u32) -> f64) {
+        let (mut reach, mut stack, mut depth) = (reach, [0_u32; STACK], 1);
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            if node.distance_squared(p) > reach * reach {
+                continue;
+            }
+            if node.count == 0 {
+                stack[depth] = node.index;
+                stack[depth + 1] = index + 1;
+                depth += 2;
+                continue;
+            }
+            let first = node.index as usize;
+            for &triangle in &self.order[first..first + node.count as usize] {
+                reach = visit(triangle);
+            }
         }
     }
 

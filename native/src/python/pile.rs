@@ -18,6 +18,7 @@ use crate::python::vectors::{
     Matrix, Rows, Triple, Vector, array, finite, matrix, pose, positive, square, table,
 };
 use crate::rest::free_body::FreeBody;
+use crate::rest::settling::{Settling, settle};
 use crate::tool::coefficients::Friction;
 
 /// A body: its contact points, Young's modulus, mass, centre, moments of inertia and drag time, if it is
@@ -35,6 +36,7 @@ type Rigid<'py> = (PyRef<'py, Tool>, Triple, Rows, f64);
 #[pyclass(module = "palpate_servo")]
 pub struct Pile {
     inner: piled::Pile,
+    settling: Option<Settling>,
 }
 
 #[pymethods]
@@ -56,6 +58,7 @@ impl Pile {
         let friction = coefficient(friction)?;
         Ok(Self {
             inner: piled::Pile::new(members, obstacles, gravity, friction),
+            settling: None,
         })
     }
 
@@ -132,16 +135,25 @@ impl Pile {
         let led = (self.inner.obstacles.get_mut(obstacle))
             .ok_or_else(|| PyValueError::new_err(format!("there is no obstacle {obstacle}")))?;
         led.goal = goal;
+        self.settling = None;
         Ok(())
     }
 
     fn tick(&mut self, dt: f64) -> PyResult<()> {
         let dt = positive("dt", dt)?;
+        self.settling = None;
         self.inner.tick(dt).map(drop).map_err(restless)
     }
 
     fn settle(&mut self, py: Python<'_>) -> PyResult<()> {
-        py.detach(|| self.inner.settle()).map_err(restless)
+        py.detach(|| settle(&mut self.inner)).map_err(restless)
+    }
+
+    /// Goes on with coming to rest by so many ticks; whether it rests.
+    fn settle_on(&mut self, py: Python<'_>, ticks: usize) -> PyResult<bool> {
+        let settling = (self.settling).get_or_insert_with(|| Settling::of(&self.inner));
+        let inner = &mut self.inner;
+        py.detach(|| settling.go_on(inner, ticks)).map_err(restless)
     }
 }
 

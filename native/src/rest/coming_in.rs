@@ -1,7 +1,8 @@
 //! How a body that rested elsewhere, or before, goes on from there.
 
 use super::finger::Finger;
-use super::resting::{AT_GOAL, Resting, Restless, SHORTEST, have_stayed};
+use super::resting::Resting;
+use super::settling::{AT_GOAL, Restless, SHORTEST, Settles, have_stayed};
 
 /// What comes in does so in ticks that are so short beside the shortest others.
 const INSTANT: f64 = 1e-3;

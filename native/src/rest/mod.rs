@@ -11,3 +11,4 @@ pub mod free_body;
 pub mod placement;
 pub mod prop;
 pub mod resting;
+pub mod settling;

@@ -7,6 +7,8 @@ use glam::DVec3;
 use super::finger::Finger;
 use super::placement::Placement;
 use super::prop::Prop;
+pub use super::settling::Restless;
+use super::settling::Settles;
 use crate::contact::cones::{MAX_FINGERS, mean};
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::mobility::Motion;
@@ -20,39 +22,11 @@ use crate::tool::collider::Collider;
 /// the body: longer ticks would end before it is.
 const LONGEST: f64 = 100.0;
 const LONGEST_RUBBING: f64 = 0.5;
-/// And this share of that at least.
-pub(super) const SHORTEST: f64 = 1e-3;
-/// On the way to rest it moves by this share of the distance between contact points in a tick, about.
-const WAY_PER_SPACING: f64 = 0.25;
 /// While it goes by more than this share of its size in a millisecond, ticks may be as long as that.
 const BRISK: f64 = 1e-4;
 const MILLISECOND: f64 = 1e-3;
 /// How often a tick takes up the work that one of the servo has to be done with.
 const TURNS: usize = 20;
-/// It rests when what is left of all wrenches is less than this share of the largest.
-const AT_REST: f64 = 1e-8;
-/// And forces change by less than this share of the largest.
-const SETTLED: f64 = 1e-8;
-/// In so many ticks one after the other.
-const QUIET_TICKS: usize = 3;
-/// Ticks that it is given, and how many times its size it may go meanwhile.
-const MOST_TICKS: usize = 20_000;
-const MOST_SIZES: f64 = 20.0;
-/// After all of its ticks so much may be left: a ball on a floor rolls ever so slowly to where its mesh
-/// is softest.
-const CREEPING: f64 = 1e-5;
-/// Tools are at their goals if they miss them by this share of the body's size.
-pub(super) const AT_GOAL: f64 = 1e-9;
-
-/// Why a body does not rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Restless {
-    /// A force is no number.
-    NotANumber,
-    /// After so many s it still moves at this speed, m/s.
-    Moving(f64, f64),
-}
-
 /// A body that nobody holds, and tools on it.
 #[derive(Debug, Clone)]
 pub struct Resting {
@@ -168,66 +142,6 @@ impl Resting {
         Ok(motion)
     }
 
-    /// Ticks until nothing changes any more.
-    ///
-    /// # Errors
-    /// [`Restless`]; the body is where it came to.
-    pub fn settle(&mut self) -> Result<(), Restless> {
-        let (mut quiet, mut speed, mut gone) = (0, 0.0, 0.0);
-        let mut before = self.wrenches();
-        let longest = self.longest_tick();
-        let mut dt = SHORTEST * longest;
-        for _ in 0..MOST_TICKS {
-            let motion = self.tick(dt, false)?;
-            let now = self.wrenches();
-            quiet = if self.is_quiet(&before, &now) {
-                quiet + 1
-            } else {
-                0
-            };
-            before = now;
-            if quiet == QUIET_TICKS {
-                return Ok(());
-            }
-            let way = motion.most(self.prop.body.size());
-            (speed, gone) = (way / dt, gone + way);
-            if gone > MOST_SIZES * self.prop.body.size() {
-                break;
-            }
-            let most = (WAY_PER_SPACING * self.spacing() / way).clamp(0.1, 2.0);
-            let is_brisk = speed * MILLISECOND > BRISK * self.prop.body.size();
-            let longest = if is_brisk {
-                longest.max(MILLISECOND)
-            } else {
-                longest
-            };
-            dt = (dt * most).clamp(SHORTEST * longest, longest);
-        }
-        if self.are_at_goals(CREEPING) && self.left_of(&before) <= CREEPING {
-            return Ok(());
-        }
-        Err(Restless::Moving(self.time, speed))
-    }
-
-    /// The longest tick in which contact with friction, if there is any, is found, s.
-    pub(super) fn longest_tick(&self) -> f64 {
-        let blocks = self.prop.body.contact_blocks.iter();
-        let stiffness: f64 = blocks.map(mean).sum();
-        let gives = self.prop.body.nodes.len() as f64 / (stiffness * self.young_modulus);
-        let has_points = self.fingers.iter().any(|finger| finger.tool().is_none());
-        let rubs = has_points || self.colliders().any(Collider::rubs);
-        let times = if rubs { LONGEST_RUBBING } else { LONGEST };
-        times * gives * self.prop.free.mass / self.prop.free.drag_time
-    }
-
-    /// The least distance between contact points, m.
-    fn spacing(&self) -> f64 {
-        let surfaces = self.colliders().filter_map(|tool| tool.surface(0));
-        surfaces.fold(self.prop.body.size(), |least, surface| {
-            least.min(surface.spacing())
-        })
-    }
-
     /// Whether tools and supports are where they are to be, but for a share of the body's size.
     pub(super) fn are_at_goals(&self, share: f64) -> bool {
         let placement = &self.prop.placement;
@@ -255,42 +169,63 @@ impl Resting {
         let felt = |tool: &Collider| tool.felt().map_or(DVec3::NAN, |felt| felt.force);
         fingers.chain(supports.map(felt)).collect()
     }
+}
 
-    /// Whether the wrenches on the body cancel and stay.
-    fn is_quiet(&self, before: &[DVec3], now: &[DVec3]) -> bool {
-        self.are_at_goals(AT_GOAL)
-            && self.left_of(now) <= AT_REST
-            && change(before, now) <= SETTLED * largest(now).max(self.weight().length())
+impl Settles for Resting {
+    fn go(&mut self, dt: f64) -> Result<f64, Restless> {
+        let motion = self.tick(dt, false)?;
+        Ok(motion.most(self.prop.body.size()))
     }
 
-    /// What is left of all wrenches on the body, as a share of the largest force.
-    fn left_of(&self, forces: &[DVec3]) -> f64 {
-        let weight = self.weight();
-        let largest = largest(forces).max(weight.length());
+    fn longest_tick(&self) -> f64 {
+        let blocks = self.prop.body.contact_blocks.iter();
+        let stiffness: f64 = blocks.map(mean).sum();
+        let gives = self.prop.body.nodes.len() as f64 / (stiffness * self.young_modulus);
+        let has_points = self.fingers.iter().any(|finger| finger.tool().is_none());
+        let rubs = has_points || self.colliders().any(Collider::rubs);
+        let times = if rubs { LONGEST_RUBBING } else { LONGEST };
+        times * gives * self.prop.free.mass / self.prop.free.drag_time
+    }
+
+    fn longest_at(&self, longest: f64, speed: f64) -> f64 {
+        if speed * MILLISECOND > BRISK * self.prop.body.size() {
+            longest.max(MILLISECOND)
+        } else {
+            longest
+        }
+    }
+
+    fn forces(&self) -> Vec<DVec3> {
+        self.wrenches()
+    }
+
+    fn weight(&self) -> f64 {
+        (self.prop.gravity * self.prop.free.mass).length()
+    }
+
+    fn left(&self) -> f64 {
+        let weight = self.prop.gravity * self.prop.free.mass;
         let (force, torque) = self.wrench();
         let left = force + self.prop.placement.direction_to_body(weight);
-        let most = left.length().max(torque.length() / self.prop.body.size());
-        if most == 0.0 { 0.0 } else { most / largest }
+        left.length().max(torque.length() / self.prop.body.size())
     }
 
-    /// In the world, N.
-    fn weight(&self) -> DVec3 {
-        self.prop.gravity * self.prop.free.mass
+    fn is_led(&self, share: f64) -> bool {
+        self.are_at_goals(share)
     }
-}
 
-/// The largest of some forces, N.
-fn largest(forces: &[DVec3]) -> f64 {
-    (forces.iter()).fold(0.0_f64, |most, force| most.max(force.length()))
-}
+    fn spacing(&self) -> f64 {
+        let surfaces = self.colliders().filter_map(|tool| tool.surface(0));
+        surfaces.fold(self.prop.body.size(), |least, surface| {
+            least.min(surface.spacing())
+        })
+    }
 
-/// By how much a force has changed at most, N.
-fn change(before: &[DVec3], now: &[DVec3]) -> f64 {
-    let pairs = before.iter().zip(now);
-    pairs.fold(0.0_f64, |most, (a, b)| most.max(a.distance(*b)))
-}
+    fn size(&self) -> f64 {
+        self.prop.body.size()
+    }
 
-/// Whether forces have stayed as they were, or there are none.
-pub(super) fn have_stayed(before: &[DVec3], now: &[DVec3]) -> bool {
-    change(before, now) <= SETTLED * largest(now)
+    fn since(&self) -> f64 {
+        self.time
+    }
 }

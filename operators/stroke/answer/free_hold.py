@@ -14,7 +14,8 @@ from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.grip import MOST_GRIPS
 from ....core.rest.grip import Grip as Hold
-from ...lying.free_body import FreeBody, Lying
+from ...lying.coming_down import Alone
+from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
 from .motion import Asked, Motion
 
@@ -44,13 +45,13 @@ class FreeHold:
     places: tuple[Array, ...]
     starts: tuple[Array, ...]
     turn: Array
-    free: FreeBody
+    free: Alone
     springs_back = True
     refused = "The object does not come to rest so; let it go nearer to what bears it"
 
     @classmethod
     def begin(
-        cls, alone: FreeBody, rested: Lying, drawn: DrawnBody, grips: tuple[Grip, ...]
+        cls, alone: Alone, rested: Lying, drawn: DrawnBody, grips: tuple[Grip, ...]
     ) -> FreeHold:
         """Take hold of a body that rests ``alone``.
 
@@ -72,7 +73,7 @@ class FreeHold:
             for place, start in zip(np.concatenate(places), np.concatenate(starts), strict=True)
         ]
         placement = rested.rest.placement
-        free = alone.touched_by(holds, placement)
+        free = Alone(alone.free.touched_by(holds, placement))
         return cls(drawn, grips, places, starts, placement.rotation, free)
 
     def lead(self, asked: Asked) -> Asked:
@@ -82,7 +83,7 @@ class FreeHold:
             start + grip.fields(mesh, places) @ shares @ self.turn.T
             for grip, places, start in zip(self.grips, self.places, self.starts, strict=True)
         ]
-        self.free.resting.lead([Pose.at(goal) for goal in np.concatenate(goals)])
+        self.free.lead([Pose.at(goal) for goal in np.concatenate(goals)])
         return asked
 
     def parts(self, asked: Asked) -> int:
@@ -94,7 +95,7 @@ class FreeHold:
     @property
     def wrench(self) -> tuple[Array, float]:
         """Force of the first grip on the body, newton, and its torque about its normal."""
-        count, rest = len(self.places[0]), self.free.resting.rest
+        count, rest = len(self.places[0]), self.free.free.resting.rest
         forces = np.array([-touch.force for touch in rest.tools[:count]]) @ rest.placement.rotation
         arms = self.places[0] - self.grips[0].centre(self.drawn.body.mesh)
         torque = np.cross(arms, forces).sum(axis=0) @ self.grips[0].normal

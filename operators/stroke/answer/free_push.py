@@ -13,7 +13,9 @@ from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.rest import Rest
-from ...lying.free_body import FreeBody, Lying
+from ...lying.coming_down import Alone
+from ...lying.free_body import Lying
+from ...lying.free_pile import FreePile
 from ...object.drawn_body import DrawnBody
 from .deepest import DEEPEST, Deepest
 from .fingertips import Fingertips
@@ -29,13 +31,13 @@ class FreePush:
 
     tips: Fingertips
     rested: Lying
-    free: FreeBody
+    free: Alone | FreePile
     springs_back = False
     refused = DEEPEST
 
     @classmethod
     def begin(
-        cls, alone: FreeBody, rested: Lying, drawn: DrawnBody, grips: tuple[Grip, ...]
+        cls, alone: Alone | FreePile, rested: Lying, drawn: DrawnBody, grips: tuple[Grip, ...]
     ) -> FreePush:
         """Set fingertips down on a body that rests ``alone``.
 
@@ -49,8 +51,8 @@ class FreePush:
             raise PalpateError("The fingertip does not fit here; a smaller one does")
         off = 2.0 * float(np.linalg.norm(rested.displacements, axis=1).max()) + AIR * drawn.size
         starts = [(tips.tool, rested.in_world(tips.pose(grip, -off))) for grip in grips]
-        free = alone.touched_by(starts, rested.rest.placement)
-        free.resting.settle()
+        free = alone.touched_by(starts)
+        free.settle()
         return cls(tips, rested, free)
 
     @property
@@ -62,7 +64,7 @@ class FreePush:
         if thickness is None:
             return None
         limit = Deepest.of(thickness, self.tips)
-        gone = self._far(thickness, self.free.resting.rest) - self._far(thickness, self.rested.rest)
+        gone = self._far(thickness, self.free.rest) - self._far(thickness, self.rested.rest)
         inward = self.rested.rest.placement.rotation @ thickness.inward
         return replace(limit, metres=limit.metres + max(0.0, float(gone @ inward)))
 
@@ -71,7 +73,7 @@ class FreePush:
         deepest, done = self.deepest, asked
         if deepest is not None and asked.amount > deepest.metres:
             done = replace(asked, amount=deepest.metres)
-        self.free.resting.lead([self._goal(grip, done.amount) for grip in self.tips.places(done)])
+        self.free.lead([self._goal(grip, done.amount) for grip in self.tips.places(done)])
         return done
 
     def parts(self, _asked: Asked) -> int:
@@ -81,7 +83,7 @@ class FreePush:
     @property
     def wrench(self) -> tuple[Array, float]:
         """Force of the first fingertip on the body, newton, and its torque about its normal."""
-        return -self.free.resting.tool_touches()[0].force, 0.0
+        return -self.free.touches()[0].force, 0.0
 
     @cached_property
     def _thickness(self) -> Thickness | None:
@@ -90,7 +92,7 @@ class FreePush:
     def _far(self, thickness: Thickness, rest: Rest) -> Array:
         """Place (3,) of the far side where the body rests so, in the world, metres."""
         drawn = self.tips.drawn
-        displacements = rest.displacements(self.free.resting.young_modulus)
+        displacements = rest.displacements(self.free.young_modulus)
         nodes = drawn.body.mesh.nodes + drawn.node_displacements(displacements)
         return rest.to_world(thickness.alpha @ nodes[thickness.nodes])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,9 +15,12 @@ from ....core.errors import PalpateError
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ...lying.before import Before
-from ...lying.coming_down import refuse_played, show
-from ...lying.free_body import FreeBody, Lying, lie, supports_under
-from ...object.drawn_body import DrawnBody
+from ...lying.coming_down import Alone, lying_bodies, show
+from ...lying.free_body import LANDING, Lying, lie, supports_under
+from ...lying.free_pile import FreePile
+from ...lying.together import together
+from ...object.drawn_body import DrawnBody, open_body
+from ...scene.object_handle import ObjectHandle
 from ...shape.drawn_shape import found_behind
 from .deepest import ENDS
 from .free_hold import FreeHold
@@ -51,28 +55,39 @@ class FreeStroke:
     grips: tuple[Grip, ...]
     young_modulus: float
     rested: Lying
-    _before: Before
-    _alone: FreeBody
+    _before: tuple[tuple[ObjectHandle, Before], ...]
+    _others: tuple[Lying, ...]
+    _coming: Alone | FreePile
+    _drawn: DrawnBody
     pace, moves = PACE, True
 
     @classmethod
     def begin(
         cls, thing: bpy.types.Object, drawn: DrawnBody, grips: tuple[Grip, ...]
     ) -> FreeStroke:
-        """Let the body come to rest.
+        """Let the body come to rest, with all soft ones that it rests on.
 
         Raises
         ------
         PalpateError
             It does not, or cannot move by itself.
         """
-        refuse_played(thing)
         graph = bpy.context.evaluated_depsgraph_get()
-        alone = lie(thing, drawn, supports_under(thing, drawn, graph))
-        rested = alone.come_down()
-        drawn = replace(drawn, frame=rested.frame)
-        young_modulus = thing.palpate.young_modulus
-        return cls(drawn, grips, young_modulus, rested, Before.of(thing), alone)
+        things = together(thing, ())
+        opened = [drawn, *(open_body(other, graph.scene) for other in things[1:])]
+        coming = lying_bodies(things, opened, graph, LANDING)
+        rested, *others = coming.settle()
+        before = tuple((ObjectHandle.of(one), Before.of(one)) for one in things)
+        return cls(
+            replace(drawn, frame=rested.frame),
+            grips,
+            thing.palpate.young_modulus,
+            rested,
+            before,
+            tuple(others),
+            coming,
+            drawn,
+        )
 
     @property
     def ends(self) -> str:
@@ -81,16 +96,31 @@ class FreeStroke:
         return ENDS if deepest is None else deepest.reason
 
     def make_ready(self, thing: bpy.types.Object) -> None:
-        """Move the object to where it came to rest."""
-        self.leave(thing, self.rested)
+        """Move the object to where it came to rest, and those that it rests on."""
+        show([thing], [self.rested], self._coming.floor)
+        self._show_others(self._others)
 
-    def leave(self, thing: bpy.types.Object, lying: Lying) -> None:
-        """Have the object lie there."""
-        show([thing], [lying], self._alone.supports.floor)
+    def leave(self, thing: bpy.types.Object, stroked: Stroked) -> None:
+        """Have the object lie where it was left."""
+        if stroked.lying is not None:
+            show([thing], [stroked.lying], self._coming.floor)
+
+    def follow(self, stroked: Stroked) -> None:
+        """Have those that the object rests on lie where they are."""
+        self._show_others(stroked.others)
 
     def give_back(self, thing: bpy.types.Object) -> None:
-        """Have the object as it was before."""
-        self._before.give_back(thing)
+        """Have all as they were before."""
+        for handle, before in self._before:
+            found = handle.find()
+            if found is not None:
+                before.give_back(found)
+
+    def _show_others(self, lying: Sequence[Lying]) -> None:
+        for (handle, _), one in zip(self._before[1:], lying, strict=False):
+            found = handle.find()
+            if found is not None:
+                show([found], [one], self._coming.floor)
 
     def close(self) -> None:
         """Nothing goes on in the background."""
@@ -128,7 +158,7 @@ class FreeStroke:
             return asked, self._pinched(asked)
         done = self._led(hand, asked)
         for _ in range(TICKS):
-            hand.free.resting.tick(TICK, hurried=True)
+            hand.free.tick(TICK)
         return done, _stroked(hand, hand.free.now())
 
     def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
@@ -141,14 +171,16 @@ class FreeStroke:
             Nothing bears it where it was let go.
         """
         if stroked.springs_back and stroked.lying is not None:
-            let_go = self._alone.touched_by((), stroked.lying.rest.placement)
+            here = [stroked.lying.rest.placement, *self._coming.placements[1:]]
+            let_go = self._coming.touched_by((), here)
             try:
-                return asked, replace(stroked, lying=let_go.come_down(), touches=())
+                lying, *others = let_go.settle()
             except PalpateError as problem:
                 raise PalpateError(
                     "The object does not come to rest where it was let go, and was given back: let "
                     "go above its floor or a collider"
                 ) from problem
+            return asked, replace(stroked, lying=lying, others=tuple(others), touches=())
         try:
             return self.stroked(asked)
         except PalpateError:
@@ -157,7 +189,7 @@ class FreeStroke:
     def _led(self, hand: FreePush | FreeHold, asked: Asked) -> Asked:
         """Lead a hand; what is asked of it at most."""
         # Asked in the axes of the body as it was touched, which may have turned as it came to rest.
-        turn = self.rested.rest.placement.rotation.T @ self._alone.drawn.frame.rotation
+        turn = self.rested.rest.placement.rotation.T @ self._drawn.frame.rotation
         by = None if asked.by is None else turn @ asked.by
         amount = hand.lead(replace(asked, by=by)).amount
         return asked if amount == asked.amount else replace(asked, amount=amount)
@@ -174,18 +206,28 @@ class FreeStroke:
 
     def _pinched(self, asked: Asked) -> Stroked:
         answer = self._patch.answer(asked.shares(self.grips[0].normal), self.young_modulus)
-        lying = self._alone.now(answer.displacements)
+        lying, *others = self._coming.now(answer.displacements)
         # What draws together is balanced: half of it goes one way.
         force = 0.5 * float(np.linalg.norm(answer.forces, axis=1).sum()) / len(self.grips)
-        return Stroked(lying.displacements, force, answer.torque, lying=lying)
+        return Stroked(lying.displacements, force, answer.torque, lying=lying, others=tuple(others))
 
     @cached_property
     def _push(self) -> FreePush:
-        return FreePush.begin(self._alone, self.rested, self.drawn, self.grips)
+        return FreePush.begin(self._coming, self.rested, self.drawn, self.grips)
 
     @cached_property
     def _hold(self) -> FreeHold:
         return FreeHold.begin(self._alone, self.rested, self.drawn, self.grips)
+
+    @property
+    def _alone(self) -> Alone:
+        """The body by itself: while a hand holds it, others stand still."""
+        if isinstance(self._coming, Alone):
+            return self._coming
+        thing = self._before[0][0].find()
+        graph = bpy.context.evaluated_depsgraph_get()
+        supports = supports_under(thing, self._drawn, graph)
+        return Alone(lie(thing, self._drawn, supports, (), self.rested.rest.placement))
 
     @cached_property
     def _patch(self) -> HeldPatch:
@@ -194,14 +236,15 @@ class FreeStroke:
         return HeldPatch.of(drawn.body, self.grips, normals)
 
 
-def _stroked(hand: FreePush | FreeHold, lying: Lying) -> Stroked:
-    force, torque = hand.wrench
+def _stroked(hand: FreePush | FreeHold, all_lying: Sequence[Lying]) -> Stroked:
+    (force, torque), (lying, *others) = hand.wrench, all_lying
     return Stroked(
         lying.displacements,
         float(np.linalg.norm(force)),
         torque,
         touches=lying.touches,
         lying=lying,
+        others=tuple(others),
         springs_back=hand.springs_back,
     )
 

@@ -13,7 +13,6 @@ from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ....core.shape.felt import held_loads
 from ....core.shape.found_behind import FoundBehind
-from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
 from .deepest import ENDS, Deepest
 from .motion import Asked, Motion
@@ -113,8 +112,11 @@ class Stroke:
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Nothing moves an object that is pinned."""
 
-    def leave(self, thing: bpy.types.Object, lying: Lying) -> None:
+    def leave(self, thing: bpy.types.Object, stroked: Stroked) -> None:
         """Nothing leaves it elsewhere."""
+
+    def follow(self, stroked: Stroked) -> None:
+        """Nothing else moves."""
 
     def give_back(self, thing: bpy.types.Object) -> None:
         """Nothing has moved it."""

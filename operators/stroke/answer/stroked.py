@@ -26,6 +26,7 @@ class Stroked:
     touches : of the tools that press, for drawing.
     loads, share : of a linear body so displaced; and of its forces that is felt.
     lying : where a body that nobody holds lies then; None of a pinned one.
+    others : where soft ones lie that it rests on.
     springs_back : whether nothing of its shape stays once it is let go, but where it lies.
     """
 
@@ -36,6 +37,7 @@ class Stroked:
     loads: tuple[FingerLoad, ...] = ()
     share: float = 1.0
     lying: Lying | None = None
+    others: tuple[Lying, ...] = ()
     springs_back: bool = False
 
     @property

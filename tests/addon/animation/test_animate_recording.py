@@ -125,7 +125,7 @@ def test_a_fingertip_is_as_deep_as_it_went_beyond_the_surface(sessions, states):
 def _pressers(thing):
     drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
     graph = bpy.context.evaluated_depsgraph_get()
-    return part("operators.animation.pressers").pressers_of(thing, graph, drawn)
+    return part("operators.animation.frames.pressers").pressers_of(thing, graph, drawn)
 
 
 @pytest.mark.parametrize("own_sizes", [False, True])

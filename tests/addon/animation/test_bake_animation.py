@@ -45,7 +45,7 @@ def tapped(chosen, tmp_path):
 def frames_of(thing, scene, frames):
     """Coordinates (p, 3) of each frame, pressed by a script."""
     pressed, opened = (
-        part("operators.animation.pressed_frames"),
+        part("operators.animation.frames.pressed_frames"),
         part("operators.object.drawn_body").open_body(thing, scene),
     )
     with part("operators.shape.drawn_shape").closing_shape(thing, opened) as shape:
@@ -110,7 +110,7 @@ def test_the_table_agrees_with_the_pressure_and_the_geometry(tapped, tmp_path):
     with table.open(newline="") as file:
         rows = list(csv.DictReader(file))
     opened = part("operators.object.drawn_body").open_body(tapped, scene)
-    pressed = part("operators.animation.pressed_frames")
+    pressed = part("operators.animation.frames.pressed_frames")
     with part("operators.shape.drawn_shape").closing_shape(tapped, opened) as shape:
         frames = list(
             pressed.press_frames(scene, range(1, 8), pressed.AnimatedPress(tapped, opened, shape))
@@ -135,7 +135,7 @@ def test_the_table_agrees_with_the_pressure_and_the_geometry(tapped, tmp_path):
 
 def test_nothing_is_left_of_a_bake_that_is_ended(tapped, tmp_path, monkeypatch):
     folder = part("operators.object.body_store").folder_for_new_files()
-    frames = part("operators.animation.bake_animation")
+    frames = part("operators.animation.all_frames")
     original = frames.press_frames
 
     def breaking(*arguments):

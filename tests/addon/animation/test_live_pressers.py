@@ -60,7 +60,7 @@ def test_no_dent_of_another_frame_is_seen_while_it_is_baked(pressed, tmp_path, m
     scene.frame_set(4)
     dented = seen_places(pressed)
     assert np.abs(dented - rest).max() > 1e-4
-    frames = part("operators.animation.bake_animation")
+    frames = part("operators.animation.all_frames")
     seen, original = [], frames.press_frames
 
     def watched(*arguments):

@@ -237,7 +237,7 @@ def test_a_stroke_that_is_given_up_gives_all_back(free_cube):
     live.hang(free_cube)
     for depth in (0.001, 0.002, 0.004):
         _, made = begun.towards(motion.Asked(motion.Motion.PUSH, depth))
-        drawing.draw(free_cube, body, made)
+        drawing.draw(free_cube, begun, made)
     assert state(free_cube) != before
     live.remove(free_cube)
     begun.give_back(free_cube)

@@ -17,10 +17,12 @@ use crate::python::vectors::{
 use crate::rest::finger::{Finger, Point};
 use crate::rest::prop;
 use crate::rest::resting::{self, Restless};
+use crate::rest::settling::{Settling, settle};
 
 #[pyclass(module = "palpate_servo")]
 pub struct Resting {
     inner: resting::Resting,
+    settling: Option<Settling>,
 }
 
 #[pymethods]
@@ -41,6 +43,7 @@ impl Resting {
         let modulus = positive("young_modulus", young_modulus)?;
         Ok(Self {
             inner: resting::Resting::new(modulus, prop, fingers),
+            settling: None,
         })
     }
 
@@ -72,6 +75,7 @@ impl Resting {
 
     fn place(&mut self, position: Triple, rotation: Rows) -> PyResult<()> {
         let pose = pose(position, rotation)?;
+        self.settling = None;
         self.inner.place(placed(&pose));
         Ok(())
     }
@@ -84,6 +88,7 @@ impl Resting {
             Finger::Tool(_, pose) => *pose = goal,
             Finger::Point(point) => point.goal = goal.position,
         }
+        self.settling = None;
         Ok(())
     }
 
@@ -92,21 +97,31 @@ impl Resting {
         let support = (self.inner.prop.supports.get_mut(number))
             .ok_or_else(|| PyValueError::new_err(format!("there is no support {number}")))?;
         support.pose = goal;
+        self.settling = None;
         Ok(())
     }
 
     #[pyo3(signature = (dt, *, hurried=false))]
     fn tick(&mut self, dt: f64, hurried: bool) -> PyResult<()> {
         let dt = positive("dt", dt)?;
+        self.settling = None;
         self.inner.tick(dt, hurried).map(drop).map_err(restless)
     }
 
     fn come_in(&mut self, py: Python<'_>) -> PyResult<()> {
+        self.settling = None;
         py.detach(|| self.inner.come_in()).map_err(restless)
     }
 
     fn settle(&mut self, py: Python<'_>) -> PyResult<()> {
-        py.detach(|| self.inner.settle()).map_err(restless)
+        py.detach(|| settle(&mut self.inner)).map_err(restless)
+    }
+
+    /// Goes on with coming to rest by so many ticks; whether it rests.
+    fn settle_on(&mut self, py: Python<'_>, ticks: usize) -> PyResult<bool> {
+        let settling = (self.settling).get_or_insert_with(|| Settling::of(&self.inner));
+        let inner = &mut self.inner;
+        py.detach(|| settling.go_on(inner, ticks)).map_err(restless)
     }
 
     fn touches<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Protocol
@@ -12,21 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...core.contact.press import ContactSettings, Press
-from ...core.contact.touches import Touch
-from ...core.errors import PalpateError
-from ...core.imprint.yielding import Yielding
-from ...core.shape.felt import felt, loads_of
-from ...core.shape.meeting import settled
-from ...core.shape.shapes import Shape
-from ..imprint.surface_imprint import SurfaceImprint
-from ..layer import place_marks
-from ..object.drawn_body import DrawnBody
-from ..place import touched_place
-from ..place.evaluation import evaluated
-from ..press.press_once import pressing_tools
-from ..scene.body_frame import BodyFrame
-from ..scene.drawn_surface import frame_of
+from ....core.contact.press import ContactSettings, Press
+from ....core.contact.touches import Touch
+from ....core.errors import PalpateError
+from ....core.imprint.yielding import Yielding
+from ....core.shape.felt import felt, loads_of
+from ....core.shape.meeting import settled
+from ....core.shape.shapes import Shape
+from ...imprint.surface_imprint import SurfaceImprint
+from ...layer import place_marks
+from ...object.drawn_body import DrawnBody
+from ...place import touched_place
+from ...place.evaluation import evaluated
+from ...press.press_once import pressing_tools
+from ...scene.body_frame import BodyFrame
+from ...scene.drawn_surface import frame_of
 from .pressers import Presser, pressers_of
 
 # Share of a tool's rounding by which it may differ from frame to frame.
@@ -126,28 +126,36 @@ class Following(Protocol):
         """Result of the frame that a graph has."""
 
 
+def graphs_of(scene: bpy.types.Scene, frames: Sequence[int]) -> Iterator[bpy.types.Depsgraph]:
+    """The scene in each of these frames."""
+    for frame in frames:
+        scene.frame_set(frame)
+        yield bpy.context.evaluated_depsgraph_get()
+
+
 def press_frames(
     scene: bpy.types.Scene, frames: Sequence[int], press: Following
 ) -> Iterator[PressedFrame]:
     """Lead the pressers through these frames, one result each; errors as of `Following.now`."""
-    for frame in frames:
-        scene.frame_set(frame)
-        yield press.now(bpy.context.evaluated_depsgraph_get())
+    return (press.now(graph) for graph in graphs_of(scene, frames))
 
 
-def imprinted(
-    pressed: Iterable[PressedFrame], law: Yielding, drawn: DrawnBody, frames_per_second: float
-) -> Iterator[PressedFrame]:
-    """The frames of a body that yields, in their order: an imprint depends on all before it.
+class Imprinting:
+    """What stays of presses of a body that yields, frame after frame: it depends on all before.
 
     Tools meet the surface at rest, and press it by forces of the elastic body: an imprint changes
     what is seen, not what is felt.
     """
-    imprint = SurfaceImprint(drawn.frame)
-    for here in pressed:
-        moved = np.zeros_like(drawn.rest) if here.moved is None else here.moved
-        seen = imprint.seen(law, moved, here.frame / frames_per_second)
-        yield replace(here, moved=seen if seen.any() else None)
+
+    def __init__(self, law: Yielding, drawn: DrawnBody, frames_per_second: float) -> None:
+        self._law, self._drawn, self._rate = law, drawn, frames_per_second
+        self._imprint = SurfaceImprint(drawn.frame)
+
+    def seen(self, here: PressedFrame) -> PressedFrame:
+        """The next frame, with it."""
+        moved = np.zeros_like(self._drawn.rest) if here.moved is None else here.moved
+        seen = self._imprint.seen(self._law, moved, here.frame / self._rate)
+        return replace(here, moved=seen if seen.any() else None)
 
 
 def same_tools(found: Sequence[Presser], before: Sequence[Presser]) -> bool:

@@ -11,17 +11,17 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.contact.tool import tools
-from ...core.contact.tool.convex_tool import convex
-from ...core.contact.tool.pose import Pose
-from ...core.contact.tool.tools import Tool
-from ...core.errors import PalpateError
-from ..object.drawn_body import DrawnBody
-from ..place.evaluation import evaluated
-from ..scene.body_frame import BodyFrame
-from ..scene.drawn_surface import metres_per_unit
-from ..tool import hull, tool_turn
-from ..tool.finger_tip import chosen_tip
+from ....core.contact.tool import tools
+from ....core.contact.tool.convex_tool import convex
+from ....core.contact.tool.pose import Pose
+from ....core.contact.tool.tools import Tool
+from ....core.errors import PalpateError
+from ...object.drawn_body import DrawnBody
+from ...place.evaluation import evaluated
+from ...scene.body_frame import BodyFrame
+from ...scene.drawn_surface import metres_per_unit
+from ...tool import hull, tool_turn
+from ...tool.finger_tip import chosen_tip
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,1 @@
+"""Bodies that meet themselves: what is drawn does not pass through itself."""

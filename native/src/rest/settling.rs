@@ -1,0 +1,148 @@
+//! Ticks until nothing changes any more, in as many parts as is liked.
+
+use glam::DVec3;
+
+/// The first tick is as long as this share of the longest one, and so is the shortest.
+pub(super) const SHORTEST: f64 = 1e-3;
+/// On the way to rest it goes by this share of the distance between contact points in a tick, about.
+const WAY_PER_SPACING: f64 = 0.25;
+/// It rests when what is left of all wrenches, and by how much forces still change, is less than this
+/// share of the largest force.
+const AT_REST: f64 = 1e-8;
+/// In so many ticks one after the other.
+const QUIET_TICKS: usize = 3;
+/// Ticks that it is given, and how many times its size it may go meanwhile.
+const MOST_TICKS: usize = 20_000;
+const MOST_SIZES: f64 = 20.0;
+/// After all of its ticks so much may be left: a ball on a floor rolls ever so slowly to where its mesh
+/// is softest.
+const CREEPING: f64 = 1e-5;
+/// What is led is at its goal if it misses that by this share of the size.
+pub(super) const AT_GOAL: f64 = 1e-9;
+
+/// Why a body does not rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Restless {
+    /// A force is no number.
+    NotANumber,
+    /// After so many s it still moves at this speed, m/s.
+    Moving(f64, f64),
+}
+
+/// What comes to rest tick by tick.
+pub trait Settles {
+    /// One tick of `dt` s: how far a place went in it at most, m.
+    ///
+    /// # Errors
+    /// [`Restless::NotANumber`].
+    fn go(&mut self, dt: f64) -> Result<f64, Restless>;
+    /// The longest tick in which contact is found, s.
+    fn longest_tick(&self) -> f64;
+    /// The same at a speed, m/s.
+    fn longest_at(&self, longest: f64, _speed: f64) -> f64 {
+        longest
+    }
+    /// Forces between all that may touch, N.
+    fn forces(&self) -> Vec<DVec3>;
+    /// The largest weight, N.
+    fn weight(&self) -> f64;
+    /// What is left of the wrenches at most, N; a torque by the size.
+    fn left(&self) -> f64;
+    /// Whether all that is led is where it goes, but for a share of the size.
+    fn is_led(&self, share: f64) -> bool;
+    /// The least distance between contact points, m.
+    fn spacing(&self) -> f64;
+    /// m.
+    fn size(&self) -> f64;
+    /// Since the beginning, s.
+    fn since(&self) -> f64;
+}
+
+/// How far something has come on its way to rest.
+#[derive(Debug, Clone)]
+pub struct Settling {
+    ticks: usize,
+    quiet: usize,
+    /// Metres.
+    gone: f64,
+    /// Seconds.
+    longest: f64,
+    dt: f64,
+    before: Vec<DVec3>,
+}
+
+impl Settling {
+    /// At the beginning.
+    pub fn of(settles: &impl Settles) -> Self {
+        let longest = settles.longest_tick();
+        Self {
+            ticks: 0,
+            quiet: 0,
+            gone: 0.0,
+            longest,
+            dt: SHORTEST * longest,
+            before: settles.forces(),
+        }
+    }
+
+    /// Goes on by at most so many ticks; whether it rests.
+    ///
+    /// # Errors
+    /// [`Restless`]; it is where it came to.
+    pub fn go_on(&mut self, settles: &mut impl Settles, ticks: usize) -> Result<bool, Restless> {
+        for _ in 0..ticks {
+            let way = settles.go(self.dt)?;
+            let now = settles.forces();
+            let largest = largest(&now).max(settles.weight());
+            let left = share_of(settles.left(), largest);
+            let stays = change(&self.before, &now) <= AT_REST * largest;
+            let is_quiet = settles.is_led(AT_GOAL) && left <= AT_REST && stays;
+            self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
+            self.before = now;
+            if self.quiet == QUIET_TICKS {
+                return Ok(true);
+            }
+            let speed = way / self.dt;
+            (self.ticks, self.gone) = (self.ticks + 1, self.gone + way);
+            if self.gone > MOST_SIZES * settles.size() || self.ticks == MOST_TICKS {
+                return if settles.is_led(CREEPING) && left <= CREEPING {
+                    Ok(true)
+                } else {
+                    Err(Restless::Moving(settles.since(), speed))
+                };
+            }
+            let most = (WAY_PER_SPACING * settles.spacing() / way).clamp(0.1, 2.0);
+            let longest = settles.longest_at(self.longest, speed);
+            self.dt = (self.dt * most).clamp(SHORTEST * longest, longest);
+        }
+        Ok(false)
+    }
+}
+
+/// Ticks until it rests.
+///
+/// # Errors
+/// [`Restless`]; it is where it came to.
+pub fn settle(settles: &mut impl Settles) -> Result<(), Restless> {
+    Settling::of(settles).go_on(settles, MOST_TICKS).map(drop)
+}
+
+/// The largest of some forces, N.
+fn largest(forces: &[DVec3]) -> f64 {
+    (forces.iter()).fold(0.0_f64, |most, force| most.max(force.length()))
+}
+
+/// By how much a force has changed at most, N.
+fn change(before: &[DVec3], now: &[DVec3]) -> f64 {
+    let pairs = before.iter().zip(now);
+    pairs.fold(0.0_f64, |most, (a, b)| most.max(a.distance(*b)))
+}
+
+fn share_of(part: f64, whole: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part / whole }
+}
+
+/// Whether forces have stayed as they were, or there are none.
+pub(super) fn have_stayed(before: &[DVec3], now: &[DVec3]) -> bool {
+    change(before, now) <= AT_REST * largest(now)
+}
