@@ -18,8 +18,10 @@ def turns(rest: Array, moved: Array, triangles: NDArray[np.int64]) -> Array:
     by_triangle = _frames(moved[triangles]) @ _frames(rest[triangles]).transpose(0, 2, 1)
     parts = np.repeat(by_triangle.reshape(-1, 9), 3, axis=0).T
     corners = triangles.ravel()
-    sums = [np.bincount(corners, weights=part, minlength=len(rest)) for part in parts]
-    return _nearest(np.stack(sums, axis=1).reshape(-1, 3, 3))
+    sums = np.empty((9, len(rest)))
+    for number, part in enumerate(parts):
+        sums[number] = np.bincount(corners, weights=part, minlength=len(rest))
+    return _nearest(sums.T.reshape(-1, 3, 3))
 
 
 def _nearest(matrices: Array) -> Array:

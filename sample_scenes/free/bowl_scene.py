@@ -12,6 +12,8 @@ import teddy_shape
 NAME, SIZE = "Teddy", (0.05, 0.0037)
 # Radii and heights of the bowl's inside, from the bottom to the rim, its wall, metres; staves.
 FOOT, RIM, BOTTOM, HIGH, WALL, STAVES = 0.038, 0.074, 0.006, 0.052, 0.005, 11
+# Half of what is between two staves, radians: parts that touch in their corners would be one.
+SEAM = 0.004
 # How the teddy is let go: metres over the ground, and leaning back by degrees.
 AT, LEANING = (-0.012, 0.0, 0.022), 24.0
 WOODS, FUR, STITCH, PATCH = (
@@ -71,10 +73,11 @@ def _bowl() -> bpy.types.Object:
     """Staves around a round bottom: convex parts of one mesh."""
     places, faces, tones = [], [], []
     turns = 2.0 * np.pi * np.arange(STAVES + 1) / STAVES
-    ring = np.column_stack([np.cos(turns), np.sin(turns)])
+    ring = np.column_stack([np.cos(turns), np.sin(turns)])[:-1]
     for number in range(STAVES):
         first = len(places)
-        for x, y in ring[number : number + 2]:
+        for turn in (turns[number] + SEAM, turns[number + 1] - SEAM):
+            x, y = np.cos(turn), np.sin(turn)
             for radius, height in (
                 (FOOT, 0.0),
                 (FOOT + WALL, 0.0),
@@ -88,7 +91,7 @@ def _bowl() -> bpy.types.Object:
         faces.extend((first + np.concatenate([corners, ends])).tolist())
     first, inner = len(places), FOOT * (1.0 + 0.3 * BOTTOM / HIGH)
     for height in (0.0, BOTTOM):
-        places.extend((inner * x, inner * y, height) for x, y in ring[:-1])
+        places.extend((inner * x, inner * y, height) for x, y in ring)
         tones.extend([WOODS[1]] * STAVES)
     low, high = first + np.arange(STAVES), first + STAVES + np.arange(STAVES)
     faces.extend([low[::-1].tolist(), high.tolist()])

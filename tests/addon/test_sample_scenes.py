@@ -60,6 +60,8 @@ def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
         ("animated", ("Animated",), 30),
         ("lifted", ("Ball",), 36),
         ("stacked", ("Lime",), 1),
+        ("table", ("Plush Mouse",), 20),
+        ("bowl", ("Teddy",), 1),
     ],
 )
 def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
