@@ -55,6 +55,7 @@ def shaken(cube, eventually, coupling):
     return min(after - before for before, after in pairwise(taken))
 
 
+@pytest.mark.in_time
 def test_a_stiff_body_that_shakes_a_late_device_is_quiet_by_default(cube, eventually):
     bare = {"stiffness": float("inf"), "damping": 0.0, "passivity_control": False}
     humming = shaken(cube, eventually, bare)

@@ -26,6 +26,7 @@ def counted(cube, eventually):
     return run
 
 
+@pytest.mark.in_time
 @pytest.mark.parametrize("timer_ms", [10, 16])
 def test_a_latency_timer_is_recognised_and_explained(counted, timer_ms):
     link, port = counted(700, latency_timer=timer_ms * 1e-3)
