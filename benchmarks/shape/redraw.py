@@ -3,10 +3,11 @@
     python benchmarks/shape/redraw.py [--quick]
 
 A ball of 3,000, 126,000 and 504,000 vertices (``--quick``: without the last) in the windowed
-Blender, all in one run: a live layer whose vertices all move, a shape key that is written anew, and
-a step of a sculpting stroke. Milliseconds of the processor, of all threads, medians: what hands the
-step over, Blender's evaluation, and its drawing (in software here, and so most of it). The layer's
-own share has the shape in it, from the body's nodes to the vertices; the key's places are known.
+Blender, all in one run: a live layer whose vertices all move under a fingertip, a shape key that is
+written anew, and a step of a sculpting stroke. Milliseconds of the processor, of all threads,
+medians: what hands the step over, Blender's evaluation, and its drawing (in software here, and so
+most of it). The layer's own share has the shape in it, from the body's nodes to the vertices, and
+what keeps these out of the tool; the key's places are known.
 
 Claims: the layer's own share within 10 ms for all, and evaluating it at most `MOST_OF_KEY` times
 the shape key.

@@ -90,10 +90,10 @@ def _layer(thing: bpy.types.Object) -> Step:
     live_layer.hang(thing)
     rng = np.random.default_rng(15)
     moves = 1e-3 * rng.normal(size=(drawn.body.compliance.node_count, 3))
-    # A fingertip, out of which vertices are kept, 2 mm deep in the top of the ball.
-    tip = PressingTool(
-        sphere(0.01), Pose.at(np.array([0.0, 0.0, 0.108])), np.array([0.0, 0.0, 1.0])
-    )
+    # A fingertip, out of which vertices are kept, 2 mm deep in the side: at the poles the ball has
+    # more vertices than anywhere.
+    at, outward = np.array([0.108, 0.0, 0.0]), np.array([1.0, 0.0, 0.0])
+    tip = PressingTool(sphere(0.01), Pose.at(at), outward)
 
     def step(number: int) -> None:
         grown = moves * (1 + 0.1 * number)
