@@ -1059,8 +1059,10 @@ class Relaxation:
     ``terms`` of its strain energy: where the entries of each domain begin, their nodes, gradients
     (q, 3), and Lame's first parameter and shear modulus times volume, of each domain. The factors
     of the stiffness and of the warp's Poisson equation as `CholeskyFactor.flat` makes them.
-    ``foam``: exponent of a foam's energy of volume, None for rubber. ``springs``: a symmetric
-    matrix (f, f) by rows. ValueError for arrays that do not fit together. All vectors are (f, 3).
+    ``law``: None for rubber; else shares and exponents, at most three, of what stretches cost and
+    of what volumes do (none: as of rubber), and whether what is pulled goes on as a parabola.
+    ``springs``: a symmetric matrix (f, f) by rows. ValueError for arrays that do not fit together.
+    All vectors are (f, 3).
     """
 
     def __new__(
@@ -1069,7 +1071,8 @@ class Relaxation:
         stiffness: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike],
         poisson: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike],
         *,
-        foam: float | None = None,
+        law: tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]], bool]
+        | None = None,
         springs: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
     ) -> Self: ...
     def another(self) -> Relaxation:

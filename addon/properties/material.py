@@ -7,8 +7,8 @@ import bpy
 
 from ...core.compliance.free_body.density import LEAST_DENSITY, MOST_DENSITY
 from ...core.law.relaxation import RELAXATIONS
-from ...core.softness.scales.materials import MATERIALS
-from .kinds import choice, number, span
+from ...core.softness.scales.materials import MATERIALS, Material
+from .kinds import choice, number, result, span
 
 # Files hold the numbers of these items: add new ones at the end only.
 CUSTOM = "CUSTOM"
@@ -46,6 +46,7 @@ def _take_material(settings: bpy.types.PropertyGroup, context: bpy.types.Context
         settings.poisson_ratio = material.poisson_ratio
         settings.density = material.density
         settings.relaxation = material.relaxation
+        settings.law = material.law
 
 
 def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.Context], None]:
@@ -56,7 +57,7 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
         if material is not None and not math.isclose(
             getattr(settings, name), getattr(material, name), rel_tol=1e-5
         ):
-            settings.material = CUSTOM
+            _leave(settings, material)
 
     return update
 
@@ -64,7 +65,13 @@ def _leave_material(name: str) -> Callable[[bpy.types.PropertyGroup, bpy.types.C
 def _leave_relaxation(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     material = MATERIALS.get(settings.material)
     if material is not None and settings.relaxation != material.relaxation:
-        settings.material = CUSTOM
+        _leave(settings, material)
+
+
+def _leave(settings: bpy.types.PropertyGroup, material: Material) -> None:
+    """Custom, of the same law."""
+    settings.law = settings.law or material.law
+    settings.material = CUSTOM
 
 
 class MaterialProperties:
@@ -106,3 +113,4 @@ class MaterialProperties:
         "NONE",
         update=_leave_relaxation,
     )
+    law: result("")

@@ -32,9 +32,10 @@ from palpate.benchmarks.measuring.shape.calculix import (
 )
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.dense import DenseCompliance
-from palpate.core.law.foam import Foam, FoamTerm
+from palpate.core.law.foam import Foam
 from palpate.core.law.law import Law
 from palpate.core.law.neo_hookean import NeoHookean
+from palpate.core.law.principal import Power
 from palpate.core.law.st_venant_kirchhoff import StVenantKirchhoff
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -51,7 +52,7 @@ LARGEST_DIFFERENCE = 1e-5
 LOAD_STEPS = 2
 
 # A foam that yields and stiffens again; its exponents are no particular foam's.
-FOAM = (FoamTerm(0.7, 8.0), FoamTerm(0.3, -2.0))
+FOAM = (Power(0.7, 8.0), Power(0.3, -2.0))
 # Without a referee of the law a program is left out.
 LAWS: dict[str, Callable[[float], tuple[Law, Forms | None, str | None]]] = {
     "neo-hookean": lambda _: (NeoHookean(), NEO_HOOKEAN, None),

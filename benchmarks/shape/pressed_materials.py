@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from palpate.core.law.neo_hookean import NeoHookean
+from palpate.core.law.of_material import LAWS
 from palpate.core.law.relaxation import RELAXATIONS
-from palpate.core.softness.ild import DISC_AREA, FLEXIBLE_FOAM, slab
+from palpate.core.softness.ild import DISC_AREA, slab
 from palpate.core.softness.pressed_slab import PressedSlab
 
 SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4)
@@ -36,7 +37,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--picture", type=Path, metavar="PNG")
     options = parser.parse_args()
-    foam = slab(FLEXIBLE_FOAM)
+    foam = slab(LAWS["foam"].law)
     rubber = replace(foam, law=NeoHookean(), poisson_ratio=RUBBER_RATIO)
     linear, shape = linearly(foam)
     fading = RELAXATIONS["MEMORY_FOAM"].modulus

@@ -11,6 +11,7 @@ import numpy as np
 from ...core.bake.settings import FORMS, BakeSettings
 from ...core.compliance.free_body.density import DEFAULT_DENSITY
 from ...core.errors import PalpateError
+from ...core.law.of_material import RUBBER
 from ...core.mesh.read_mesh import TetFile, read_surface, read_tets
 from ...core.mesh.surface import Surface
 from ...core.mesh.tet_mesh import TetMesh
@@ -189,6 +190,7 @@ def _settings(
         stiffness=None if scale is None else TetScale(scale),
         threads=threads,
         density=_density(arguments),
+        law=RUBBER if arguments.material is None else arguments.material.law,
     ).checked()
 
 

@@ -30,6 +30,7 @@ def body_figures(body: SoftBody) -> dict[str, object]:
         "extents_m": np.ptp(body.mesh.nodes, axis=0).tolist(),
         "poisson_ratio": body.poisson_ratio,
         "young_modulus": body.young_modulus,
+        "law": body.law,
         **({} if body.density is None else {"density": body.density, "mass_kg": body.mass}),
         "formulation": body.formulation,
         **_stiffness_range(body),

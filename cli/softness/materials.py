@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 
+from ...core.law.of_material import LAWS, RUBBER
 from ...core.softness.scales.materials import MATERIALS, Material
 
 HELP = "list the material presets and their sources"
@@ -29,6 +30,8 @@ def run(arguments: argparse.Namespace) -> int:
         weight = f"{material.density:g} kg/m3"
         print(f"{name.lower().replace('_', '-'):16}{material.name}: {constants}, {weight}")
         print(f"{'':16}{material.basis}: {material.source}")
+        if material.law != RUBBER:
+            print(f"{'':16}law of {material.law}: {LAWS[material.law].source}")
     return 0
 
 
@@ -51,6 +54,7 @@ def _figures(material: Material) -> dict[str, object]:
         "source": material.source,
         "shore": None if material.shore is None else str(material.shore),
         "density": material.density,
+        "law": material.law,
     }
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from ..compliance.free_body.density import density_checked
 from ..errors import PalpateError
+from ..law.of_material import RUBBER, law_checked
 from ..stiffness.assembly import lame_parameters
 from ..stiffness.formulation import AUTOMATIC, formulation_for
 from ..stiffness.pins import PinBelow, Pins, fraction_checked
@@ -32,6 +33,7 @@ class BakeSettings:
     tolerance : largest relative column error from compression.
     stiffness : stiffer and softer regions; None for the same everywhere.
     threads : of BLAS at most; None for one on each idle core.
+    law : a name of :data:`..law.of_material.LAWS`, only stored.
     density : kg/m3, only stored; None for that of water where the body is free, else unknown.
     """
 
@@ -48,6 +50,7 @@ class BakeSettings:
     stiffness: StiffRegion | TetScale | None = None
     threads: int | None = None
     density: float | None = None
+    law: str = RUBBER
 
     def checked(self) -> BakeSettings:
         """These settings, checked.
@@ -80,6 +83,7 @@ class BakeSettings:
         if self.density is not None:
             density_checked(self.density)
         formulation_for(self.formulation, self.poisson_ratio)
+        law_checked(self.law)
         if isinstance(self.pins, PinBelow):
             fraction_checked(self.pins.fraction)
         if self.form not in FORMS:

@@ -150,6 +150,7 @@ def bake(
         scale,
         fit,
         density=settings.density or (DEFAULT_DENSITY if is_free else None),
+        law=settings.law,
     )
     told = [*size_warnings(mesh), *misfit, *warnings]
     return body, replace(report, fit=fit, warnings=told)

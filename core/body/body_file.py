@@ -9,6 +9,7 @@ checksum : hex digest over all other arrays but ``compliance``, which has its ow
 nodes (N, 3) f64, tets (M, 4) i64, surface_triangles (S, 3) i64, fixed (p,) i64, poisson_ratio f64,
 formulation text, young_modulus f64 (what the maker chose; not part of the key),
 young_scale (M,) f64 where the body is not equally stiff everywhere,
+law text, of :data:`..law.of_material.LAWS`, where it is not rubber's (not part of the key),
 density f64, kg/m3, of a free body (whose ``fixed`` is empty) and where it is known,
 fit (11,) f64 where the surface that it was made from was known; see :class:`..mesh.fit.Fit`.
 form : of the compliance, for a modulus of 1 Pa: ``dense`` or ``compressed``.
@@ -41,6 +42,7 @@ from ..files.atomic_file import atomic_file
 from ..files.npz_archive import Archive, ArchiveError, opened, write_arrays
 from ..files.windows.long_path import reaching
 from ..files.windows.shared_reading import open_shared
+from ..law.of_material import RUBBER, law_checked
 from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh, young_scale_checked
 from ..stiffness.assembly import lame_parameters
@@ -96,6 +98,8 @@ def save(body: SoftBody, path: str | os.PathLike[str]) -> None:
         arrays["young_scale"] = body.young_scale
     if body.fit is not None:
         arrays["fit"] = body.fit.as_array()
+    if body.law != RUBBER:
+        arrays["law"] = np.array(body.law)
     if body.density is not None:
         arrays["density"] = np.array(body.density)
     arrays |= _compliance_arrays(body.compliance)
@@ -247,6 +251,7 @@ def _body(stored: Arrays, compliance: Compliance) -> SoftBody:
         else None,
         Fit.of_array(stored["fit"]) if "fit" in stored else None,
         density=density_checked(float(stored["density"])) if "density" in stored else None,
+        law=law_checked(str(stored["law"])) if "law" in stored else RUBBER,
     )
     if body.is_free and body.density is None:
         raise PalpateError("damaged ({missing} missing)", missing="density")

@@ -27,8 +27,8 @@ NEEDED_BY_FORM = {
     "dense": (TABLE, "compliance_diagonal", "compliance_checksums"),
     "compressed": ("tolerance", *(PREFIX + name for name in LAYOUT)),
 }
-OPTIONAL = ("young_scale", "fit", "density")
-TEXTS = ("format", "key", "checksum", "formulation", "form")
+OPTIONAL = ("young_scale", "fit", "density", "law")
+TEXTS = ("format", "key", "checksum", "formulation", "form", "law")
 MOST_BYTES_OF_TEXT = 1_000
 FIGURES_OF_FIT = 11
 # A compressed compliance larger than this many dense ones, with room for padding, is none.

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..compliance.free_body.inertia import Inertia
 from ..compliance.protocol import Compliance
 from ..errors import PalpateError
+from ..law.of_material import RUBBER
 from ..mesh.closest_point import ClosestPoints
 from ..mesh.fit import Fit
 from ..mesh.tet_mesh import TetMesh
@@ -34,6 +35,7 @@ class SoftBody:
     young_scale : float64 (M,), factor of Young's modulus per tetrahedron; None where all are 1.
     fit : to the surface that the mesh was made from; None where that is not known.
     density : kg/m3, of a free body always; else None where it is not known.
+    law : a name of :data:`..law.of_material.LAWS`, by which it gives way at depth. Not baked in.
     older_key : of a body file from before -0.0 was 0.0 for the key; else None.
     """
 
@@ -47,6 +49,7 @@ class SoftBody:
     fit: Fit | None = None
     older_key: str | None = None
     density: float | None = None
+    law: str = RUBBER
 
     @cached_property
     def key(self) -> str:

@@ -17,26 +17,16 @@ from functools import lru_cache
 import numpy as np
 
 from ..errors import PalpateError
-from ..law.foam import Foam, FoamTerm
+from ..law.foam import Foam
+from ..law.law import Law
+from ..law.of_material import law_of
 from .pressed_slab import PressedSlab
 
 SIDE, THICKNESS, DISC_AREA = 0.380, 0.100, 0.0323
 SHARES = (0.25, 0.40, 0.65)
 
-# Slow foam of a mattress, what lasts: G. Silber, C. Then: Preventive Biomechanics, Springer 2013,
-# table 4.3: shear moduli of 5.280 and 1.043 kPa, exponents of 22.09 and 26.70, and a Poisson's
-# ratio of 0.000 and 0.003.
-MEASURED = (5280.146, 22.08547), (1042.675, 26.69817)
-FLEXIBLE_FOAM = Foam(
-    0.0,
-    tuple(
-        FoamTerm(modulus / sum(other for other, _ in MEASURED), exponent)
-        for modulus, exponent in MEASURED
-    ),
-)
-
-# Of the presets of foam, whose modulus is the mean over an indentation by a quarter.
-LINEAR_RATIO = 0.2
+# Of the presets of foam.
+POISSON_RATIO = 0.2
 SHALLOW = 0.001
 
 
@@ -76,7 +66,7 @@ def ild_of_young(young_modulus: float) -> IldForces:
             "cushions lie between 5e3 and 1e5 Pa",
             young_modulus=young_modulus,
         )
-    at_25, at_40, at_65 = (young_modulus * force for force in _at_one_pascal(FLEXIBLE_FOAM))
+    at_25, at_40, at_65 = (young_modulus * force for force in _at_one_pascal())
     return IldForces(at_25, at_40, at_65, young_modulus, at_25 / _linear_at_one_pascal())
 
 
@@ -93,26 +83,26 @@ def ild_of_force(force: float) -> IldForces:
             "indentation force is {force} N; give the positive force at 25 %, such as 125 (28 lbf)",
             force=force,
         )
-    return ild_of_young(force / _at_one_pascal(FLEXIBLE_FOAM)[0])
+    return ild_of_young(force / _at_one_pascal()[0])
 
 
-def slab(law: Foam) -> PressedSlab:
-    """The test's slab, of another foam."""
+def slab(law: Law, poisson_ratio: float = POISSON_RATIO) -> PressedSlab:
+    """The test's slab, of a law."""
     return PressedSlab(
         law,
-        law.poisson_ratio,
+        poisson_ratio,
         SIDE / float(np.sqrt(np.pi)),
         THICKNESS,
         float(np.sqrt(DISC_AREA / np.pi)),
     )
 
 
-@lru_cache(maxsize=8)
-def _at_one_pascal(law: Foam) -> tuple[float, ...]:
-    return tuple(slab(law).forces(SHARES).tolist())
+@lru_cache(maxsize=1)
+def _at_one_pascal() -> tuple[float, ...]:
+    return tuple(slab(law_of(POISSON_RATIO, "foam")).forces(SHARES).tolist())
 
 
 @lru_cache(maxsize=1)
 def _linear_at_one_pascal() -> float:
     """Force at 25 % of a linear slab of 1 Pa, newton."""
-    return float(slab(Foam(LINEAR_RATIO)).forces((SHALLOW,))[0] * SHARES[0] / SHALLOW)
+    return float(slab(Foam(POISSON_RATIO)).forces((SHALLOW,))[0] * SHARES[0] / SHALLOW)

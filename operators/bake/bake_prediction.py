@@ -13,6 +13,7 @@ from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory
 from ...core.stiffness.pins import NoPins, PinBelow, PinCore, Pins
+from ..object.baked_settings import law_of_object
 from ..pins import pin_group, stiff_region
 from ..scene.drawn_surface import DrawnSurface
 
@@ -99,6 +100,7 @@ def all_settings_of(thing: bpy.types.Object, drawn: DrawnSurface) -> BakeSetting
         settings_of(thing, pin_group.pins(thing, drawn)),
         young_modulus=chosen.young_modulus,
         density=chosen.density,
+        law=law_of_object(thing),
         time_limit=chosen.time_limit,
         stiffness=stiff_region.stiff_region(thing, drawn),
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import bpy
 
 from ...core.bake.settings import BakeSettings
+from ...core.law.of_material import RUBBER, law_checked
+from ...core.softness.scales.materials import MATERIALS
 
 
 def settings_of(thing: bpy.types.Object) -> BakeSettings:
@@ -25,3 +27,17 @@ def settings_of(thing: bpy.types.Object) -> BakeSettings:
         tolerance=baked.baked_tolerance / 100,
         density=baked.density,
     ).checked()
+
+
+def law_of_object(thing: bpy.types.Object) -> str:
+    """Name of its material's law: what the preset said, or for objects whose material nobody chose,
+    and of older files, what it says.
+
+    Raises
+    ------
+    PalpateError
+        An unknown one.
+    """
+    chosen = thing.palpate
+    preset = MATERIALS.get(chosen.material)
+    return law_checked(chosen.law or (RUBBER if preset is None else preset.law))

@@ -26,6 +26,7 @@ from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.object_handle import ObjectHandle
 from . import body_store, kept_body, pin_change, soft_object
+from .baked_settings import law_of_object
 from .embedded_body import embedded
 from .hung_map import hung_on
 from .soft_object import BodyStatus, Fit
@@ -211,7 +212,8 @@ def open_body(
     surface = body_source.read_again(thing, scene)
     status = soft_object.with_file(thing, soft_object.mesh_status(thing, surface))
     soft_object.refuse_changed(thing, status)
-    body = _stored(thing, status) if as_stored else _body(thing, surface, status)
+    found = _stored(thing, status) if as_stored else _body(thing, surface, status)
+    body = kept_body.of_law(found, law_of_object(thing))
     rest = drawn_surface.rest_coordinates(layers.drawn_mesh(thing))
     places = surface.frame.body_from_local(rest.reshape(-1, 3).astype(np.float64))
     imprint = imprint_of(thing)

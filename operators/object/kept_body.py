@@ -5,6 +5,9 @@ Tools need seconds to prepare on a body; the next press on it reuses that.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import lru_cache
+
 import bpy
 
 from ...core.body.soft_body import SoftBody
@@ -77,3 +80,10 @@ def _stamp(thing: bpy.types.Object) -> tuple[object, ...] | None:
         return None
     about = path.stat()
     return (path, thing.palpate.body_key, about.st_mtime_ns, about.st_size, about.st_ino)
+
+
+# What is prepared for a body is kept with it: the next press on the object finds the same one.
+@lru_cache(maxsize=2)
+def of_law(body: SoftBody, law: str) -> SoftBody:
+    """The body with this law; the same one each time."""
+    return body if body.law == law else replace(body, law=law)

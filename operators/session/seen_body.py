@@ -19,6 +19,7 @@ from ..imprint.kept_imprint import NothingStaysError
 from ..imprint.surface_imprint import SurfaceImprint, yielding_of
 from ..layer import live_layer
 from ..lying.pressed_prop import PressedProp
+from ..object.baked_settings import law_of_object
 from ..object.drawn_body import DrawnBody
 from ..shape.drawn_shape import DrawnShape, chosen_shape, loads_of
 from ..tool.finger_tip import FingerTip
@@ -77,7 +78,7 @@ class SeenBody:
 
     def draw(self, thing: bpy.types.Object, snapshot: Snapshot, young_modulus: float) -> Shape:
         """Draw a tick, unless it is already drawn; the shape that is drawn."""
-        self.shape.follow(chosen_shape(thing))
+        self.shape.follow(chosen_shape(thing), law_of_object(thing))
         self._draw(thing, snapshot, young_modulus)
         return self.shape.made
 

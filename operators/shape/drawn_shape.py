@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -71,11 +71,12 @@ class DrawnShape:
         """The shape that is drawn: the linear one until the chosen one is made."""
         return self._shape
 
-    def follow(self, name: str) -> None:
-        """Draw this shape as soon as it is ready. Does not wait."""
-        if name != self.name:
+    def follow(self, name: str, law: str) -> None:
+        """Draw this shape, of a body of this law, as soon as it is ready. Does not wait."""
+        if name != self.name or law != self.body.law:
             self._end()
             self.name, self.problem = name, ""
+            self.body = replace(self.body, law=law)
             self._take(LinearShape(self.body))
             if name != "linear":
                 if self._behind is None:

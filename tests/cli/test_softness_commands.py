@@ -37,24 +37,27 @@ def test_every_material_is_listed_with_its_source(palpate, figures_of):
     _, printed, _ = palpate("materials")
     assert "ecoflex-30" in printed
     assert "51 kPa" in printed
+    assert "Silber and Then" in printed
     assert figures_of("materials")["DRAGON_SKIN_10"]["shore"] == "A 10"
 
 
 @pytest.mark.parametrize(
-    ("options", "young", "ratio"),
+    ("options", "young", "ratio", "law"),
     [
-        ([], 10_000, 0.3),
-        (["--material", "ecoflex-30"], 51_000, 0.48),
-        (["--material", "ecoflex-30", "--poisson", 0.3, "--young", 5], 5, 0.3),
-        (["--shore", "A20", "--poisson", 0.49], 741_600, 0.49),
+        ([], 10_000, 0.3, "rubber"),
+        (["--material", "ecoflex-30"], 51_000, 0.48, "rubber"),
+        (["--material", "ecoflex-30", "--poisson", 0.3, "--young", 5], 5, 0.3, "rubber"),
+        (["--material", "pu-foam-soft"], 25_000, 0.2, "foam"),
+        (["--material", "plush", "--young", 300], 300, 0.3, "fibres"),
+        (["--shore", "A20", "--poisson", 0.49], 741_600, 0.49, "rubber"),
     ],
 )
-def test_a_bake_takes_presets_and_shore_values(tets, tmp_path, palpate, options, young, ratio):
+def test_a_bake_takes_presets_and_shore_values(tets, tmp_path, palpate, options, young, ratio, law):
     out = tmp_path / "cube.npz"
     assert palpate("bake", tets, "-o", out, *options)[0] == 0
     body = body_file.load(out)
     assert body.young_modulus == pytest.approx(young, rel=1e-3)
-    assert body.poisson_ratio == ratio
+    assert (body.poisson_ratio, body.law) == (ratio, law)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array, eye_array, kron
 
+from ...law.law import Law
 from ...law.of_material import law_of
 from ...mesh.tet_mesh import TetMesh
 from ...stiffness.assembly import lame_parameters
@@ -65,6 +66,7 @@ class CoarseSolid:
         fixed: NDArray[np.int64],
         poisson_ratio: float,
         young_scale: NDArray[np.float64] | None = None,
+        law: Law | None = None,
     ) -> CoarseSolid:
         """Coarse solid of a body's tetrahedra and pins.
 
@@ -73,6 +75,7 @@ class CoarseSolid:
         lattice : around ``mesh``.
         fixed : (k,), pinned nodes of the mesh.
         poisson_ratio, young_scale : as in :func:`.solid.solid`.
+        law : of the material; None for the one that Poisson's ratio alone tells.
         """
         scale = np.ones(len(mesh.tets)) if young_scale is None else young_scale
         quarters = _Quarters.of(lattice, scale)
@@ -96,7 +99,7 @@ class CoarseSolid:
         springs = _pins(lattice, mesh, fixed, stiffness) + _unseen(lattice, unseen)
         return cls(
             lattice,
-            Solid(tuple(terms), lattice.node_count, law_of(poisson_ratio)),
+            Solid(tuple(terms), lattice.node_count, law or law_of(poisson_ratio)),
             Springs(springs),
             part_modulus,
         )

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 import palpate_servo
@@ -25,14 +26,18 @@ from scipy.sparse import csr_array, diags_array
 
 from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
 from ...errors import PalpateError
-from ...law.foam import Foam, FoamTerm
+from ...law.foam import Cells, Foam
 from ...law.law import Law
 from ...law.neo_hookean import NeoHookean
+from ...law.ogden import Ogden
+from ...law.principal import Power
 from ..solid.free_solid import FreeSolid
 from ..solid.springs import Springs
 from ..solid.strain_term import StrainTerm
 
 Array = NDArray[np.float64]
+# Shares and exponents of stretches, and of volumes; whether what is pulled goes on as a parabola.
+Powers: TypeAlias = tuple[list[tuple[float, float]], list[tuple[float, float]], bool]
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +125,7 @@ class Relaxation:
             [_entries(term) for term in terms],
             factor.flat(np.float32),
             _poisson(terms[0], springs, positions).flat(np.float64, every=3),
-            foam=_foam_exponent(law),
+            law=_powers(law),
             springs=None if springs is None else _rows(springs.matrix),
         )
         return cls(native, factor)
@@ -212,12 +217,24 @@ def _poisson(term: StrainTerm, springs: Springs | None, positions: Array) -> Cho
     return elimination.factor(matrix.data[:, None, None] * np.eye(3))
 
 
-def _foam_exponent(law: Law) -> float | None:
-    """What the law's energy of volume has as an exponent; None for rubber's."""
+def _powers(law: Law) -> Powers | None:
+    """What stretches and volumes cost by the law, as the native code takes it; None for rubber."""
     match law:
         case NeoHookean():
             return None
-        case Foam(poisson_ratio, (FoamTerm(1.0, 2.0),)):
-            # Without Poisson's ratio there is no energy of volume, and any exponent will do.
-            return -2.0 * poisson_ratio / (1.0 - 2.0 * poisson_ratio) or 1.0
+        case Ogden(terms):
+            return _pairs(terms), [], False
+        case Cells(terms):
+            return _pairs(terms), _pairs(terms), True
+        case Foam(_, terms):
+            # Without Poisson's ratio there is no energy of volume, and any will do.
+            exponents = law.volume_exponents
+            volume = [
+                (term.share, exponent) for term, exponent in zip(terms, exponents, strict=False)
+            ]
+            return _pairs(terms), volume, False
     raise PalpateError("relaxation: there is none by the law {law}; use Newton's method", law=law)
+
+
+def _pairs(terms: Sequence[Power]) -> list[tuple[float, float]]:
+    return [(term.share, term.exponent) for term in terms]

@@ -24,6 +24,7 @@ from scipy.sparse import csr_array
 
 from ...body.soft_body import SoftBody
 from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
+from ...law.of_material import law_of
 from ...stiffness.assembly import lame_parameters
 from ...stiffness.held_pins import pins_checked
 from .coarse_solid import CoarseSolid, by_axes, spring_of_each
@@ -67,7 +68,10 @@ class TwoLevels:
         pins_checked(body.mesh, body.fixed)
         mesh, seen = body.mesh, body.compliance.free_surface
         lattice = lattice_of(mesh, most_nodes)
-        coarse = CoarseSolid.of(lattice, mesh, body.fixed, body.poisson_ratio, body.young_scale)
+        law = law_of(body.poisson_ratio, body.law)
+        coarse = CoarseSolid.of(
+            lattice, mesh, body.fixed, body.poisson_ratio, body.young_scale, law
+        )
         surface = lattice.interpolation(mesh.nodes[seen], lattice.node_parts[seen])
         _, shear = lame_parameters(1.0, body.poisson_ratio)
         stiffness = FOLLOWING * shear * lattice.edge * coarse.part_modulus

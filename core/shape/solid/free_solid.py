@@ -55,7 +55,7 @@ class FreeSolid:
         """
         mesh = body.mesh
         pins_checked(mesh, body.fixed)
-        own_law = law_of(body.poisson_ratio) if law is None else law
+        own_law = law_of(body.poisson_ratio, body.law) if law is None else law
         whole = solid(mesh, body.poisson_ratio, own_law, body.formulation, body.young_scale)
         free = np.setdiff1d(np.arange(len(mesh.nodes)), body.fixed)
         terms = tuple(

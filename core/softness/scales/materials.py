@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...law.of_material import RUBBER
 from .shore import Shore, young_from_shore
 
 TENSILE = (
@@ -25,8 +26,12 @@ TENSILE = (
 )
 NGUYEN = "Nguyen et al. 2014, Ultrasound in Medicine and Biology 40, 168"
 SLAB = (
-    "which a slab of 380 x 380 x 100 mm on a smooth plate gives: the mean of what is firm at first "
-    "and yields"
+    "by the law of foam, an indentation load deflection (ASTM D3574: disc of 323 cm2, 25 % of a "
+    "slab of 380 x 380 x 100 mm)"
+)
+MEAN = (
+    "what a linear slab gives under such a disc: the mean of what is firm at first and yields, for "
+    "what gives way with time is felt as a linear body; indentation load deflection"
 )
 
 
@@ -45,6 +50,7 @@ class Material:
     shore : by the data sheet, where it gives one.
     relaxation : how it gives way with time, a key of
         :data:`palpate.core.law.relaxation.RELAXATIONS`.
+    law : how it gives way at depth, a key of :data:`palpate.core.law.of_material.LAWS`.
     """
 
     name: str
@@ -55,6 +61,7 @@ class Material:
     basis: str = "estimate"
     shore: Shore | None = None
     relaxation: str = "NONE"
+    law: str = RUBBER
 
 
 def _silicone(name: str, shore: Shore, young_modulus: float, density: float) -> Material:
@@ -83,6 +90,7 @@ MATERIALS = {
         0.30,
         40.0,
         "order of magnitude; density with its cloth, of a bear of 300 g and 7.5 litres",
+        law="fibres",
     ),
     "JELLY": Material(
         "Jelly",
@@ -103,7 +111,8 @@ MATERIALS = {
         30_000.0,
         0.20,
         35.0,
-        "order of magnitude; density of seat cushions, which have 1.5 to 2.5 lb/ft3",
+        f"{SLAB} of 22 lbf (96 N): a soft cushion; density of seats, which have 1.5 to 2.5 lb/ft3",
+        law="foam",
     ),
     "SILICONE_SOFT": Material(
         "Soft silicone (Shore 00-30)",
@@ -130,6 +139,7 @@ MATERIALS = {
         "density of a mixture with 30 parts of carbon black in 100",
         "measured",
         Shore("A", 50.0),
+        law="natural-rubber",
     ),
     "ECOFLEX_10": _silicone("Ecoflex 00-10", Shore("00", 10.0), 29_000.0, 1_040.0),
     "ECOFLEX_20": Material(
@@ -147,17 +157,19 @@ MATERIALS = {
     "DRAGON_SKIN_30": _silicone("Dragon Skin 30", Shore("A", 30.0), 587_000.0, 1_080.0),
     "PU_FOAM_SOFT": Material(
         "Soft polyurethane foam",
-        7_000.0,
+        25_000.0,
         0.20,
         25.0,
-        f"indentation load deflection of 18 lbf (80 N on 323 cm2 at 25 %), {SLAB}",
+        f"{SLAB} of 18 lbf (80 N)",
+        law="foam",
     ),
     "LATEX_FOAM": Material(
         "Latex foam",
-        11_000.0,
+        39_000.0,
         0.20,
         75.0,
-        f"indentation load deflection of 28 lbf (125 N on 323 cm2 at 25 %), {SLAB}",
+        f"{SLAB} of 28 lbf (125 N)",
+        law="foam",
     ),
     "EVA_FOAM": _eva(),
     "GELATINE_3": Material(
@@ -192,6 +204,7 @@ MATERIALS = {
         0.20,
         30.0,
         "order of magnitude; the plush toy above, filled tighter",
+        law="fibres",
     ),
     "FLESH": Material(
         "Skin over flesh",
@@ -207,7 +220,7 @@ MATERIALS = {
         4_500.0,
         0.20,
         55.0,
-        f"indentation load deflection of 12 lbf (53 N on 323 cm2 at 25 %), {SLAB}",
+        f"{MEAN} of 12 lbf (53 N)",
         relaxation="MEMORY_FOAM",
     ),
     "CHEWING_GUM": Material(

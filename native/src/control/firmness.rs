@@ -13,8 +13,8 @@
 //! [toll](super::toll) takes.
 
 /// Bounds of what is felt.
-const LEAST: f64 = 0.3;
-const MOST: f64 = 3.0;
+const LEAST: f64 = 0.1;
+const MOST: f64 = 5.0;
 /// Another firmness is there within about this time, s.
 const FADING: f64 = 0.05;
 /// What adds less than this adds nothing.

@@ -37,6 +37,8 @@ type GivenFactor<'py, T> = (
     Counts<'py>,
     PyReadonlyArray1<'py, T>,
 );
+/// Shares and exponents of stretches and of volumes, and whether what is pulled goes on as a parabola.
+type GivenLaw = (Vec<(f64, f64)>, Vec<(f64, f64)>, bool);
 type GivenSprings<'py> = (Counts<'py>, Counts<'py>, Numbers<'py>);
 
 #[pyclass(frozen, module = "palpate_servo")]
@@ -47,12 +49,12 @@ pub struct Relaxation {
 #[pymethods]
 impl Relaxation {
     #[new]
-    #[pyo3(signature = (terms, stiffness, poisson, *, foam=None, springs=None))]
+    #[pyo3(signature = (terms, stiffness, poisson, *, law=None, springs=None))]
     fn new(
         terms: Vec<GivenTerm<'_>>,
         stiffness: GivenFactor<'_, f32>,
         poisson: GivenFactor<'_, f64>,
-        foam: Option<f64>,
+        law: Option<GivenLaw>,
         springs: Option<GivenSprings<'_>>,
     ) -> PyResult<Self> {
         let (stiffness, poisson) = (factor(&stiffness)?, factor(&poisson)?);
@@ -71,7 +73,9 @@ impl Relaxation {
         let solid = Solid {
             strained: Strained {
                 terms: made,
-                law: foam.map_or(Law::NeoHookean, Law::Foam),
+                law: law
+                    .map_or(Some(Law::default()), of_powers)
+                    .ok_or_else(unfit)?,
                 springs,
             },
             warp: Warp::new(weights, poisson),
@@ -281,6 +285,10 @@ fn below(numbers: &Counts<'_>, count: usize) -> PyResult<Vec<u32>> {
             _ => Err(unfit()),
         })
         .collect()
+}
+
+fn of_powers((stretches, volume, is_straight): GivenLaw) -> Option<Law> {
+    Law::of(&stretches, &volume, is_straight)
 }
 
 fn unfit() -> PyErr {

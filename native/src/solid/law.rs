@@ -1,33 +1,66 @@
 //! Energy and stress of strained places: the laws of `core/law/`, four places at a time.
 //!
-//! Both laws share what grows with the shear modulus, mu (|F|^2 / 2 - 3/2 - ln J); they differ in what
-//! volume costs. Where a place has lost 95 % of its volume they go on as a parabola.
+//! All of them are sums of what each principal stretch costs, per shear modulus, and of what a change of
+//! volume costs, per Lame's first parameter. Rubber and Blatz' and Ko's foam know their stretches by their
+//! squares alone, mu (|F|^2 / 2 - 3/2 - ln J), which takes no eigenvectors. Where a place has lost 95 % of its
+//! volume, or of a length, it goes on as a parabola.
 
+mod powers;
+mod principal;
+
+use self::powers::{FLATTEST, Powers};
 use super::four::{Four, Matrix, cofactors, dot, on_diagonal, plus, scaled, transposed};
 
-/// Of a volume, about what nothing that is pressed comes to.
-const FLATTEST: f64 = 0.05;
 /// Up to this |x - 1| / (x + 1) the series of the logarithm is summed, to the last digit.
 const NEAR: f64 = 0.03;
 
-/// What a change of volume costs, per Lame's first parameter.
+/// Of a material.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
-    /// (J - 1)^2 / 2: rubber.
-    NeoHookean,
-    /// (J^e - 1 - e ln J) / e^2 with this exponent e, not zero: foam of one term with the exponent 2, whose
-    /// Poisson's ratio nu stays the same under every load along an axis if e = -2 nu / (1 - 2 nu).
-    Foam(f64),
+pub struct Law {
+    /// What stretches cost, per shear modulus; nothing where their squares do, as in rubber.
+    stretches: Option<Powers>,
+    /// What a change of volume costs, per Lame's first parameter; nothing where it is (J - 1)^2 / 2.
+    volume: Option<Powers>,
+}
+
+/// The neo-Hookean law.
+impl Default for Law {
+    fn default() -> Self {
+        Self {
+            stretches: None,
+            volume: None,
+        }
+    }
 }
 
 /// Value and slope of a function.
 type Sloped = (Four, Four);
 
 impl Law {
+    /// The law whose stretches and volume cost such powers, shares and exponents, with no volume's where
+    /// there are none; `is_straight` where what is pulled goes on as a parabola from rest. Nothing where
+    /// there are too many powers, or what is no number.
+    pub fn of(stretches: &[(f64, f64)], volume: &[(f64, f64)], is_straight: bool) -> Option<Self> {
+        let powers = |given: &[(f64, f64)]| Powers::of(given, is_straight);
+        let squares = stretches == [(1.0, 2.0)] && !is_straight;
+        Some(Self {
+            stretches: if squares {
+                None
+            } else {
+                Some(powers(stretches).filter(|_| !stretches.is_empty())?)
+            },
+            volume: if volume.is_empty() {
+                None
+            } else {
+                Some(powers(volume)?)
+            },
+        })
+    }
+
     /// Energies and stresses (first Piola and Kirchhoff's) at displacement gradients `h`, by moduli that
     /// may be times volumes.
     #[inline(always)]
-    pub fn stressed(self, h: &Matrix, first_lame: Four, shear: Four) -> (Four, Matrix) {
+    pub fn stressed(&self, h: &Matrix, first_lame: Four, shear: Four) -> (Four, Matrix) {
         let trace = h[0][0] + h[1][1] + h[2][2];
         let second = (h[0][0] * h[1][1] - h[0][1] * h[1][0])
             + (h[1][1] * h[2][2] - h[1][2] * h[2][1])
@@ -36,8 +69,14 @@ impl Law {
         let third = dot(&h[0], &own[0]);
         // J - 1, exact to rounding also where h is small.
         let excess = trace + second + third;
+        let (volume, volume_slope) = self.volume(excess, first_lame);
+        let moved = cofactors(&on_diagonal(h, Four::all(1.0)));
+        if let Some(powers) = &self.stretches {
+            let (along, shape) = principal::stressed(powers, h, excess, shear);
+            let pressed = scaled(&moved, first_lame * volume_slope);
+            return (shear * along + first_lame * volume, plus(&shape, &pressed));
+        }
         let (held, held_slope) = barrier(excess);
-        let (volume, volume_slope) = self.volume(excess);
         let square = dot(&h[0], &h[0]) + dot(&h[1], &h[1]) + dot(&h[2], &h[2]);
         let density =
             shear * (Four::all(0.5) * square - second - third + held) + first_lame * volume;
@@ -46,16 +85,24 @@ impl Law {
         let shape = plus(&plus(h, &transposed(h)), &minus_own);
         let shape = scaled(&on_diagonal(&shape, -trace), shear);
         let pressure = shear * held_slope + first_lame * volume_slope;
-        let moved = cofactors(&on_diagonal(h, Four::all(1.0)));
         (density, plus(&shape, &scaled(&moved, pressure)))
     }
 
+    /// What a volume 1 + excess costs, half of what a stretch does.
     #[inline(always)]
-    fn volume(self, excess: Four) -> Sloped {
-        match self {
-            Law::NeoHookean => (Four::all(0.5) * excess * excess, excess),
-            Law::Foam(exponent) => foam(excess, exponent),
+    fn volume(&self, excess: Four, first_lame: Four) -> Sloped {
+        let Some(powers) = &self.volume else {
+            return (Four::all(0.5) * excess * excess, excess);
+        };
+        let (mut value, mut slope) = (excess, excess);
+        for lane in 0..4 {
+            // Domains of shear have no modulus of volume.
+            if first_lame.0[lane] != 0.0 {
+                let (one, its_slope) = powers.sloped(excess.0[lane]);
+                (value.0[lane], slope.0[lane]) = (0.5 * one, 0.5 * its_slope);
+            }
         }
+        (value, slope)
     }
 }
 
@@ -93,22 +140,4 @@ fn less_logarithm(excess: Four) -> Four {
         }
     }
     found
-}
-
-/// (J^e - 1 - e ln J) / e^2 at J = 1 + excess.
-#[inline(always)]
-fn foam(excess: Four, e: f64) -> Sloped {
-    let (mut value, mut slope) = (excess, excess);
-    for lane in 0..4 {
-        let over = excess.0[lane].max(FLATTEST - 1.0);
-        let below = (excess.0[lane] - over).min(0.0);
-        let (x, logarithm) = (1.0 + over, over.ln_1p());
-        let grown = (e * logarithm).exp_m1();
-        let first = grown / (e * x);
-        // What is not convex there is driven back all the same.
-        let second = (((e - 1.0) * grown + e) / (e * x * x)).max(0.0);
-        value.0[lane] = (grown - e * logarithm) / (e * e) + below * (first + 0.5 * below * second);
-        slope.0[lane] = first + below * second;
-    }
-    (value, slope)
 }

@@ -31,7 +31,7 @@ impl Strained {
         forces.fill([0.0; 3]);
         let mut energy = 0.0;
         for term in &self.terms {
-            energy += stressed(term, self.law, moved, forces);
+            energy += stressed(term, &self.law, moved, forces);
         }
         if let Some(springs) = &self.springs {
             springs.add_forces(moved, forces);
@@ -87,7 +87,7 @@ impl Springs {
 
 widely! {
     /// The energy of a term; adds its forces.
-    fn stressed(term: &Term, law: Law, moved: &Nodal, forces: &mut Nodal) -> f64 {
+    fn stressed(term: &Term, law: &Law, moved: &Nodal, forces: &mut Nodal) -> f64 {
         let mut energy = Four::default();
         for four in 0..term.domains.fours() {
             let (first_lame, shear) = term.moduli[four];

@@ -35,6 +35,19 @@ def test_the_file_has_the_documented_keys_for_plain_numpy(cube, file):
         assert int(stored["version"]) == body_file.VERSION
 
 
+def test_the_law_is_kept_beside_the_key_and_an_unknown_one_refused(cube, file):
+    foam = replace(cube, law="foam")
+    body_file.save(foam, file)
+    found = body_file.load(file)
+    assert (found.law, found.key) == ("foam", cube.key)
+    body_file.save(cube, file)
+    assert body_file.load(file).law == "rubber"
+    for name in ("porridge", "foam" * 500):
+        body_file.save(replace(cube, law=name), file)
+        with pytest.raises(BodyFileError, match=r"bake again|no single word"):
+            body_file.load(file)
+
+
 def test_the_key_follows_all_that_the_compliance_depends_on_and_nothing_else(cube, mouse):
     key = body_key(cube.mesh, cube.fixed, 0.49)
     assert body_key(cube.mesh, cube.fixed[::-1], 0.49) == key

@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 from referees.led_solid import settled
 
-from palpate.core.law.foam import Foam, FoamTerm
+from palpate.core.law.foam import Foam
 from palpate.core.law.neo_hookean import NeoHookean
+from palpate.core.law.principal import Power
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.solid.inversion import is_upright
 from palpate.core.shape.solid.solid import solid
 
 EDGE = 0.05
 STEP = 0.05
-FOAM = (FoamTerm(0.7, 8.0), FoamTerm(0.3, -2.0))
+FOAM = (Power(0.7, 8.0), Power(0.3, -2.0))
 MATERIALS = {
     "rubber": (0.45, NeoHookean(), "smoothed"),
     "soft rubber": (0.3, NeoHookean(), "linear"),

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from palpate.core.law.foam import Foam, FoamTerm
+from palpate.core.law.foam import Foam
+from palpate.core.law.principal import Power
 from palpate.core.stiffness.assembly import lame_parameters
 
-TERMS = (FoamTerm(0.7, 8.0), FoamTerm(0.3, -2.0))
+TERMS = (Power(0.7, 8.0), Power(0.3, -2.0))
 RATIOS = [-0.2, 0.0, 0.1, 0.3]
 
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
-from referees.hereditary import held_force
+from referees.hereditary import held_force, retreating_force
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import displacements_of, native_tool
@@ -46,6 +46,22 @@ def test_pressed_in_and_held_it_relaxes_by_the_hereditary_integral(whole, finger
     expected = held_force(SERIES, elastic, DT)
     assert np.abs(found - expected).max() < 0.03 * expected.max()
     assert found[-1] < 0.7 * found.max()
+
+
+@pytest.mark.parametrize(("down", "held", "up"), [(100, 100, 100), (200, 0, 50), (50, 300, 400)])
+def test_drawn_back_it_lets_go_as_ting_says(whole, fingertip, down, held, up):
+    ways = [np.arange(1, down + 1) / down, np.ones(held), 1.0 - np.arange(1, up + 1) / up]
+    depths = 3e-3 * np.concatenate(ways)
+    elastic, _ = led(whole, depths, fingertip, ())
+    found, _ = led(whole, depths, fingertip)
+    expected = retreating_force(SERIES, elastic, depths, DT)
+    assert np.abs(found - expected).max() < 0.03 * expected.max()
+    # Long before the finger is back where the surface was, and without the pull that the integral
+    # of the way in alone would give.
+    let_go = np.flatnonzero(found > 0.0)[-1]
+    assert let_go < len(depths) - 0.2 * up
+    assert abs(let_go - np.flatnonzero(expected > 0.0)[-1]) <= 0.05 * up
+    assert held_force(SERIES, elastic, DT)[let_go:].min() < -0.1 * expected.max()
 
 
 def test_a_dent_comes_back_slowly_and_is_drawn(whole, cube_body):

@@ -48,7 +48,7 @@ def test_the_force_is_that_much_firmer(whole, firmness):
     for depth in (0.0005, 0.002, 0.004, 0.012):
         force = fingers.follow(np.stack([down(depth)] * FADED))[0][-1][0][2]
         s = min(depth / 0.004, DEEP)
-        share = max(1.0 + firmness[0] * s + firmness[1] * s * s, 0.3)
+        share = max(1.0 + firmness[0] * s + firmness[1] * s * s, 0.1)
         assert force / linear_force(whole, depth) == pytest.approx(share, rel=NEARLY)
         assert fingers.snapshot().firmness == pytest.approx(share, rel=NEARLY)
 

@@ -127,8 +127,8 @@ def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
 
 
 def test_it_is_bounded():
-    assert Firmness(100.0, 0.0, 1.0).at(1.0) == 3.0
-    assert Firmness(-100.0, 0.0, 1.0).at(1.0) == 0.3
+    assert Firmness(100.0, 0.0, 1.0).at(1.0) == 5.0
+    assert Firmness(-100.0, 0.0, 1.0).at(1.0) == 0.1
 
 
 def test_a_wall_presses_a_block_that_would_turn_aside_under_its_forces(block):
