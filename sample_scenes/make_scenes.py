@@ -29,6 +29,7 @@ def main() -> int:
         import bpy
         import finger_scenes
         import lifted_scene
+        import material_scene
         import scenes
         import stacked_scene
         import table_scene
@@ -38,6 +39,7 @@ def main() -> int:
         stored |= {name.title(): bodies.stored_tets(name) for name in ("drumstick", "hare")}
         stored |= finger_scenes.tets() | lifted_scene.tets() | stacked_scene.tets()
         stored |= table_scene.tets() | bowl_scene.tets()
+        stored |= material_scene.tets()
         for name, (make, finish) in {
             "cube": (lambda: [scenes.cube_scene()], None),
             "mouse": (lambda: [scenes.mouse_scene()], None),
@@ -51,6 +53,7 @@ def main() -> int:
             "stacked": (stacked_scene.stacked_scene, stacked_scene.settle_stack),
             "table": (table_scene.table_scene, table_scene.bake_press),
             "bowl": (bowl_scene.bowl_scene, bowl_scene.settle_teddy),
+            "materials": (material_scene.material_scene, material_scene.keep_presses),
             "large": (lambda: [scenes.hare_scene()], None),
         }.items():
             if options.only not in {None, name}:

@@ -38,6 +38,21 @@ def held_force(
     return found
 
 
+def creep(series: Sequence[tuple[float, float]], ticks: int, dt: float) -> NDArray[np.float64]:
+    """What an elastic force has to grow by (ticks,) for :func:`held_force` of it to stay 1."""
+    shares, seconds = np.array(series).T
+    x = dt / seconds
+    own, left, found = -np.expm1(-x) / x, np.zeros(len(x)), np.zeros(ticks)
+    grown = 0.0
+    for tick in range(ticks):
+        left *= np.exp(-x)
+        step = (1.0 - grown - left.sum()) / (1.0 + shares @ own)
+        left += shares * step * own
+        grown += step
+        found[tick] = grown
+    return found
+
+
 def retreating_force(
     series: Sequence[tuple[float, float]],
     elastic: NDArray[np.float64],

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
-from referees.hereditary import held_force, retreating_force
+from referees.hereditary import creep, held_force, retreating_force
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import displacements_of, native_tool
@@ -46,6 +46,18 @@ def test_pressed_in_and_held_it_relaxes_by_the_hereditary_integral(whole, finger
     expected = held_force(SERIES, elastic, DT)
     assert np.abs(found - expected).max() < 0.03 * expected.max()
     assert found[-1] < 0.7 * found.max()
+
+
+def test_a_sphere_that_sinks_in_as_it_creeps_keeps_its_force(whole, fingertip):
+    """Depths of Lee and Radok for a force that stays: the elastic one grows by the creep."""
+    grid = np.linspace(1e-5, 3.5e-3, 400)
+    elastic, _ = led(whole, grid, fingertip, ())
+    growing = creep(SERIES, 700, DT)
+    depths = np.interp(0.9 * elastic[-1] * growing, elastic, grid)
+    assert depths[-1] > 1.5 * depths[0]
+    found, _ = led(whole, depths, fingertip)
+    # It comes down within 20 ms, not at once; of that little is left after three times as long.
+    assert np.abs(found[60:] / (0.9 * elastic[-1]) - 1.0).max() < 0.03
 
 
 @pytest.mark.parametrize(("down", "held", "up"), [(100, 100, 100), (200, 0, 50), (50, 300, 400)])
