@@ -2,6 +2,7 @@
 
 import bodies
 import bpy
+import fabric
 import numpy as np
 import scenes
 import studio
@@ -28,7 +29,8 @@ def material_scene() -> list[bpy.types.Object]:
         cube = scenes.paper_cube(scene, name)
         cube.location.x = (number - 1) * APART
         bodies.set_up(cube, scenes.PINNED, material=material, formulation="SMOOTHED")
-        scenes.paint(cube.data, np.tile(colour, (len(cube.data.vertices), 1)))
+        darker = (0.5 * colour[0], 0.5 * colour[1], 0.5 * colour[2])
+        cube.data.materials[0] = fabric.foam(colour, darker, scenes.CUBE_EDGE / 10.0)
         cubes.append(cube)
     scene.frame_start, scene.frame_end = FRAMES[0], FRAMES[-1]
     studio.present(scene, cubes[0], (0.0, 0.0, 0.022), (0.0, -0.42, 0.24), 70.0, 0.26)

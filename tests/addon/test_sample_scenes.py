@@ -62,6 +62,7 @@ def test_a_sample_scene_only_lacks_its_body_file(palpate, tmp_path, name):
         ("stacked", ("Lime",), 1),
         ("table", ("Plush Mouse",), 20),
         ("bowl", ("Teddy",), 1),
+        ("materials", ("Rubber", "Foam", "Memory Foam"), 20),
     ],
 )
 def test_a_scene_plays_without_palpate(palpate, tmp_path, name, objects, frame):
