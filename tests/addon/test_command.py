@@ -48,7 +48,8 @@ def test_bake_saves_a_file_that_can_be_pressed(figures_of, scene):
     bent = figures_of(PRESS)
     assert figures_of(f"{PRESS} --shape rotation-strain")["force"] == bent["force"]
     pressed = figures_of(f"{PRESS} --keep --shape linear")
-    assert 0 < pressed["force"][2] == pytest.approx(bent["force"][2], rel=0.2)
+    # The fibres of plush stiffen.
+    assert 0 < pressed["force"][2] < bent["force"][2] < 1.5 * pressed["force"][2]
     assert pressed["force"][2] != bent["force"][2]
     assert (bent["shape"], pressed["shape"]) == ("real", "linear")
     assert bent["max_displacement"] != pressed["max_displacement"]
