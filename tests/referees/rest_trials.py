@@ -3,6 +3,10 @@
 A trial is drawn from its seed. In every tick the energy, elastic and of the body's height, grows by
 no more than hands put in; no place of the body sinks into the floor or leaves the rest of it; at
 the end, hands gone, the body lies on the floor, which bears its weight.
+
+What hands put in while their forces change lies between what the forces before and those after the
+tick would: the latter is the more where a hand comes, the former where a body follows one that
+goes, and where it slides off a hand's edge, round which a force turns by ten degrees in a tick.
 """
 
 from __future__ import annotations
@@ -112,10 +116,10 @@ class _Trial:
             resting.lead(
                 [Pose(s.position + by, s.rotation) for s, by in zip(starts, moved, strict=True)]
             )
-            energy = self.energy(rest)
+            energy, pushed = self.energy(rest), _pushes(rest)
             rest = resting.step(seconds)
-            pushes = np.array([-touch.force for touch in rest.tools]).reshape(-1, 3)
-            put_in = float((pushes * (moved - before)).sum())
+            by = moved - before
+            put_in = max(float((pushes * by).sum()) for pushes in (pushed, _pushes(rest)))
             scale = self.weight * self.size + abs(put_in)
             self.gained = max(self.gained, (self.energy(rest) - energy - put_in) / scale)
             before = moved
@@ -131,6 +135,11 @@ class _Trial:
         surface = rest.surface()
         self.sunk = max(self.sunk, float(-surface[:, 2].min()) / self.size)
         self.stretched = max(self.stretched, _reach(surface) / self.reach)
+
+
+def _pushes(rest: Rest) -> Array:
+    """Of hands on the body, (hands, 3), N."""
+    return np.array([-touch.force for touch in rest.tools]).reshape(-1, 3)
 
 
 def _reach(surface: Array) -> float:

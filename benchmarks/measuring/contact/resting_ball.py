@@ -54,8 +54,28 @@ class RestingBall:
         centre = 2.0 + radius - depth
         return self._pressed(lambda places: _from_sphere(places, centre, radius), depth)
 
+    def spread_under_sphere(self, radius: float, depth: float) -> tuple[float, float]:
+        """The same force, and how wide the table presses: the root of the mean square of the
+        distance from the axis, weighed by the pressure.
+        """
+        centre = 2.0 + radius - depth
+
+        def above(places: Array) -> Any:
+            return _from_sphere(places, centre, radius)
+
+        u = self._at_rest(above, depth)
+        places = self._places(u)
+        pressure = self._weights * np.maximum(-places[:, 1], 0.0)
+        square = float(pressure @ places[:, 0] ** 2) / float(pressure.sum())
+        return self._force(u, above), float(np.sqrt(square))
+
     def _pressed(self, above: Any, depth: float) -> tuple[float, float]:
         """Force and radius of the lower patch, or of the only one."""
+        u = self._at_rest(above, depth)
+        return self._force(u, above), self._patch(u, above)
+
+    def _at_rest(self, above: Any, depth: float) -> Array:
+        """Displacements at rest."""
         u = np.zeros(self._basis.N)
         # So both touch from the beginning, and nothing is without a hold.
         u[self._upright] = 0.0 if self.glued else -0.5 * depth
@@ -67,7 +87,7 @@ class RestingBall:
             sizes.append(float(np.abs(left[free]).max()))
             force = self._force(u, above)
             if sizes[-1] < CONVERGED * max(force, 1e-12):
-                return force, self._patch(u, above)
+                return u
             way = splu(tangent[free][:, free].tocsc()).solve(-left[free])
             share = 1.0
             while share > 1e-6:

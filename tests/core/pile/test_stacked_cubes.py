@@ -51,7 +51,7 @@ def test_a_column_sinks_under_its_weight():
         _, upper = pile.step(2e-3)
     top = upper.surface()[:, 2].max()
     sunk = 2.0 * EDGE - top
-    assert sunk == pytest.approx(0.5 * 1000.0 * GRAVITY * (2.0 * EDGE) ** 2 / 100_000.0, rel=0.04)
+    assert sunk == pytest.approx(0.5 * 1000.0 * GRAVITY * (2.0 * EDGE) ** 2 / 100_000.0, rel=0.02)
 
 
 def test_nothing_is_gained_on_the_way(cube):
