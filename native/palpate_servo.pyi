@@ -1118,6 +1118,26 @@ class Relaxation:
         is led, by energy (``close`` is enough), and steps.
         """
 
+    def kept_out(
+        self,
+        linear: ArrayLike,
+        tools: Sequence[tuple[Tool, ArrayLike, ArrayLike]],
+        places: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike],
+        compliance: ArrayLike,
+        work: float,
+        close: float,
+        most_steps: int,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float, int]:
+        """The body at rest beside rigid ``tools``, with the position and the rotation of each, that
+        press p ``places`` of its surface without friction and never hold one.
+
+        Places: three free nodes of each (3p,), the same among the m nodes whose ``compliance``
+        (m * m, 3, 3) is given, area coordinates (p, 3), none of what is pinned, where they are at
+        rest (p, 3), force over depth while one is within (p,), and which tool (p,). From ``linear``
+        displacements. Linear and warped displacements, forces (p, 3) on the places, by what share
+        of ``work`` it is not at rest or places are still within (``close`` is enough), and steps.
+        """
+
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:
     """The coupling for devices with motors of which nothing but the encoders' step at the handle
     (m) is known: see docs/stability.md. ValueError for a rate or a step without sense.

@@ -47,6 +47,13 @@ class ImprintedBody(SoftBody):
     imprint: DrawnImprint
 
 
+def as_touched(body: SoftBody, places: Array) -> Array:
+    """Where contact meets places (k, 3) of the surface at rest: with the imprint, as it is drawn,
+    since the triangles of the body are coarser than a dent.
+    """
+    return places + body.imprint.at(places) if isinstance(body, ImprintedBody) else places
+
+
 def imprinted(body: SoftBody, imprint: DrawnImprint) -> ImprintedBody:
     """The body with an imprint."""
     nodes, surface = body.mesh.nodes.copy(), body.mesh.surface_nodes

@@ -187,6 +187,7 @@ def tool_touch(body: SoftBody, tool: Tool, pose: Pose, told: SettledTool) -> Too
     """Touch of a tool at a pose, both of the body's frame, as the native engine tells it."""
     order = np.argsort(told["points"])
     return ToolTouch(
+        body=body,
         tool=tool,
         pose=pose,
         force=told["force"],

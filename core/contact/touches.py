@@ -55,6 +55,7 @@ class ToolTouch:
 
     Attributes
     ----------
+    body : that it touches, with its imprint.
     tool, pose : of the touch.
     force : float64 (3,), on the tool, newton.
     torque : float64 (3,), on the tool about its reference point, newton metres.
@@ -71,6 +72,7 @@ class ToolTouch:
     nodal_forces : float64 (k, 3), forces on these, newton.
     """
 
+    body: SoftBody
     tool: Tool
     pose: Pose
     force: Array

@@ -55,6 +55,7 @@ class Felt:
         own = Pose(self.placement.to_tool(pose.position), turn.T @ pose.rotation)
         normals = tool.distance(own.to_tool(moved))[1] @ own.rotation.T
         return ToolTouch(
+            body=self.body,
             tool=tool,
             pose=own,
             force=touch.force @ turn,

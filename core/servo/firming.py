@@ -7,10 +7,12 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from palpate_servo import Snapshot
+from palpate_servo import FingerSnapshot, Snapshot
 
 from ..body.soft_body import SoftBody
-from ..shape.rotation_strain.finger_load import FingerLoad, alike
+from ..contact.tool.pose import Pose
+from ..contact.tool.tools import Tool
+from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike
 from ..shape.rotation_strain.firmness import Firmness
 from ..shape.shapes import Shape, pressed_by
 
@@ -32,7 +34,7 @@ class Firmed(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Look:
-    """At what it is looked: loads of a linear body, times ``ahead``."""
+    """At what it is looked: loads of a linear body, and ``ahead`` times as deep."""
 
     loads: tuple[FingerLoad, ...] = ()
     ahead: float = 0.0
@@ -40,7 +42,9 @@ class _Look:
 
 @dataclass(eq=False)
 class Firming:
-    """Follows a servo's touch; between calls of :meth:`follow` a thread may be at work.
+    """Follows a servo's touch; ``tool`` is what all its fingers press with, where it slides.
+
+    Between calls of :meth:`follow` a thread may be at work.
 
     While fingers move, firmness is that of a press somewhat deeper; once they are at rest that of
     the very press, as of one without a clock.
@@ -48,6 +52,7 @@ class Firming:
 
     servo: Firmed
     body: SoftBody
+    tool: Tool | None = None
     _finding: Future[Firmness] | None = None
     _worker: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, "palpate-firmness")
@@ -70,7 +75,7 @@ class Firming:
         PalpateError
             What was looked for cannot be computed.
         """
-        loads = pressing(self.body, snapshot)
+        loads = self.pressing(snapshot)
         is_other, self._shape = shape is not self._shape, shape
         if not loads or is_other:
             self._looked = _Look()
@@ -91,6 +96,28 @@ class Firming:
             _firmness, shape, self._looked, young_modulus, snapshot.held
         )
 
+    def pressing(self, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
+        """Loads of the fingers that touch, as a linear body would have them; none of one that gives
+        way with time, which presses as a linear one does.
+        """
+        if len(snapshot.remembered_nodes):
+            return ()
+        return tuple(
+            FingerLoad(
+                self.body.mesh.surface_nodes[finger.nodes],
+                finger.nodal_forces / snapshot.firmness,
+                sticks=not len(finger.points),
+                by=self._setting(finger),
+            )
+            for finger in snapshot.fingers
+            if finger.touching and len(finger.nodes)
+        )
+
+    def _setting(self, finger: FingerSnapshot) -> Setting | None:
+        if self.tool is None or not len(finger.points):
+            return None
+        return Setting(self.tool, Pose(finger.proxy, finger.orientation), self.body)
+
     def close(self) -> None:
         """End; does not wait."""
         self._worker.shutdown(wait=False, cancel_futures=True)
@@ -107,27 +134,9 @@ class Firming:
             self.servo.set_firmness(firmness.root, firmness.whole, firmness.reach)
 
 
-def pressing(body: SoftBody, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
-    """Loads of the fingers that touch, as a linear body would have them; none of one that gives
-    way with time, which presses as a linear one does.
-    """
-    if len(snapshot.remembered_nodes):
-        return ()
-    return tuple(
-        FingerLoad(
-            body.mesh.surface_nodes[finger.nodes],
-            finger.nodal_forces / snapshot.firmness,
-            sticks=not len(finger.points),
-        )
-        for finger in snapshot.fingers
-        if finger.touching and len(finger.nodes)
-    )
-
-
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:
     """Of loads that hold ``held``, J/Pa, as the servo counts it: with the near field."""
-    loads = [FingerLoad(one.nodes, look.ahead * one.forces, one.sticks) for one in look.loads]
-    found = pressed_by(shape, loads, young_modulus)
+    found = pressed_by(shape, look.loads, young_modulus, look.ahead)
     if not (found.energy > 0.0 and held > 0.0):
         return found.firmness
-    return found.firmness.times(look.ahead**2 * held / found.energy)
+    return found.firmness.times(held / found.energy)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..body.soft_body import SoftBody
 from ..contact.touches import PointTouch, ToolTouch
 from ..grip.cells import cells_of
-from .rotation_strain.finger_load import FingerLoad
+from .rotation_strain.finger_load import FingerLoad, Setting
 from .rotation_strain.firmness import Firmness
 from .shapes import Shape, firmness_of
 
@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 # Parts at most that a hand holds each for itself.
 MOST_PARTS = 120
+# Friction, as a share of the forces, that is none.
+FREELY = 1e-6
 
 One = TypeVar("One", PointTouch, ToolTouch, PointTouch | ToolTouch)
 
@@ -41,10 +43,19 @@ class Felt(Generic[One]):
 def loads_of(touches: Sequence[PointTouch | ToolTouch]) -> list[FingerLoad]:
     """Loads of all fingers that press, by the linear force law."""
     return [
-        FingerLoad(one.nodes, one.nodal_forces, sticks=isinstance(one, PointTouch))
+        FingerLoad(one.nodes, one.nodal_forces, isinstance(one, PointTouch), _setting(one))
         for one in touches
         if len(one.nodes)
     ]
+
+
+def _setting(touch: PointTouch | ToolTouch) -> Setting | None:
+    """The tool where it is; None of a point, and of a tool that does not slide freely."""
+    if isinstance(touch, PointTouch):
+        return None
+    along = touch.forces - touch.pushes[:, None] * touch.normals
+    slides = np.abs(along).sum() <= FREELY * np.abs(touch.forces).sum()
+    return Setting(touch.tool, touch.pose, touch.body) if slides else None
 
 
 def held_loads(body: SoftBody, nodes: NDArray[np.int64], forces: Array) -> list[FingerLoad]:

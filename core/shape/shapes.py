@@ -165,8 +165,11 @@ def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float)
     return pressed_by(shape, loads, young_modulus).firmness
 
 
-def pressed_by(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
-    """The same, and where the body's free surface comes to rest, if that was found.
+def pressed_by(
+    shape: Shape, loads: Sequence[FingerLoad], young_modulus: float, ahead: float = 1.0
+) -> Pressed:
+    """The same, and where the body's free surface comes to rest, if that was found; of a press that
+    is deeper, ``ahead`` times.
 
     Raises
     ------
@@ -174,8 +177,17 @@ def pressed_by(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) 
         The shape cannot be computed.
     """
     if isinstance(shape, RotationStrainShape):
-        return shape.pressed(loads, young_modulus)
+        return shape.pressed(loads, young_modulus, ahead)
     return LINEAR
+
+
+def rest_known(
+    shape: Shape, loads: Sequence[FingerLoad], young_modulus: float
+) -> NDArray[np.float64] | None:
+    """Displacements (n, 3) at rest of a press that was looked for already, metres; at once."""
+    if isinstance(shape, RotationStrainShape):
+        return shape.known(loads, young_modulus).displacements
+    return None
 
 
 def shape_name(choice: str) -> ShapeName:

@@ -67,7 +67,8 @@ class ForceLoop:
     _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.firming = Firming(self.servo, self.drawn.body)
+        slides = not self.settings.servo.static_friction
+        self.firming = Firming(self.servo, self.drawn.body, self.tip.tool if slides else None)
 
     @classmethod
     def prepare(
@@ -210,6 +211,7 @@ class ForceLoop:
     def _set(self) -> None:
         turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
         chosen = self.settings.servo
+        self.firming.tool = None if chosen.static_friction else self.tip.tool
         if self.prop is not None:
             # Nobody has tried how one that moves gives way with time.
             chosen = replace(chosen, relaxation=())

@@ -103,7 +103,8 @@ class PressSession(PressedObject):
         self._watch_faults(snapshot)
         self._report_problems(loop)
         if self.state.phase is not Phase.LOST and not self.state.withdrawn:
-            loop.firm(snapshot, self.seen.draw(thing, snapshot, loop.settings.servo.young_modulus))
+            young, touch = loop.settings.servo.young_modulus, loop.firming.pressing(snapshot)
+            loop.firm(snapshot, self.seen.draw(thing, snapshot, young, touch))
         self._note_depths(loop.recorder, snapshot)
         return moved
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...core.contact.tool.tool_surface import surface_and_correction
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
+from ...core.shape.meeting import Met
 from ...core.shape.rotation_strain.finger_load import FingerLoad
 from ...core.shape.shapes import Shape
 from ..imprint import kept_imprint
@@ -50,6 +51,7 @@ class SeenBody:
     drawn_contact: tuple[object, ...] = ()
     imprint: SurfaceImprint = field(init=False)
     _loads: tuple[FingerLoad, ...] = ()
+    _touch: tuple[FingerLoad, ...] = ()
     _modulus: float = 1.0
     _lifted_at: int = -1
 
@@ -76,8 +78,17 @@ class SeenBody:
             return nodes
         return nodes + self.drawn.node_displacements(self.displacements)
 
-    def draw(self, thing: bpy.types.Object, snapshot: Snapshot, young_modulus: float) -> Shape:
-        """Draw a tick, unless it is already drawn; the shape that is drawn."""
+    def draw(
+        self,
+        thing: bpy.types.Object,
+        snapshot: Snapshot,
+        young_modulus: float,
+        touch: tuple[FingerLoad, ...],
+    ) -> Shape:
+        """Draw a tick, unless it is already drawn; the shape that is drawn. ``touch``: loads whose
+        force may be that of the body at rest.
+        """
+        self._touch = touch
         self.shape.follow(chosen_shape(thing), law_of_object(thing))
         self._draw(thing, snapshot, young_modulus)
         return self.shape.made
@@ -88,7 +99,9 @@ class SeenBody:
             for finger in snapshot.fingers
         )
         besides = snapshot.remembered_forces.tobytes(), snapshot.borne_forces.tobytes()
-        contact = (self.shape.name, self.shape.ready, young_modulus, fingers, besides)
+        rest = self.shape.at_rest(self._touch, young_modulus)
+        ready = self.shape.ready, rest is not None
+        contact = (self.shape.name, ready, young_modulus, fingers, besides)
         fades = self.imprint.fades(yielding_of(thing, self.drawn.frame))
         if contact == self.drawn_contact and not fades:
             return
@@ -104,6 +117,8 @@ class SeenBody:
             self._write(thing, None, snapshot)
             return
         met = self.shape.draw(self._loads, young_modulus)
+        if rest is not None:
+            met = Met(rest, met.linear, 0.0)
         if not met.settled or self.shape.ready < 1.0:
             # Still incomplete: drawn again in the next frame.
             self.drawn_contact = ()
@@ -151,7 +166,7 @@ class SeenBody:
         """Draw the shape to keep, as far as its tables are ready."""
         if not self._loads or self.drawn_contact:
             return []
-        met = self.shape.finish(self._loads, self._modulus)
+        met = self.shape.finish(self._loads, self._touch, self._modulus)
         self._write(thing, met.displacements, snapshot)
         if self.shape.ready == 1.0:
             return []

@@ -14,6 +14,8 @@ from functools import lru_cache
 from pathlib import Path
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ...core.body.soft_body import SoftBody
 from ...core.errors import PalpateError
@@ -21,8 +23,18 @@ from ...core.servo.session import Snapshot, drawn_loads
 from ...core.shape.found_behind import FoundBehind
 from ...core.shape.meeting import Meeting, Met
 from ...core.shape.rotation_strain.finger_load import FingerLoad
-from ...core.shape.shapes import LinearShape, Shape, is_felt, shape, shape_name
+from ...core.shape.shapes import (
+    LinearShape,
+    Shape,
+    is_felt,
+    pressed_by,
+    rest_known,
+    shape,
+    shape_name,
+)
 from ..object.drawn_body import DrawnBody
+
+Array = NDArray[np.float64]
 
 # Longest wait for a kept shape's table, s.
 PATIENCE = 3.0
@@ -85,6 +97,10 @@ class DrawnShape:
         if self._making is not None and self._making.done():
             self._take_made()
 
+    def at_rest(self, touch: Sequence[FingerLoad], young_modulus: float) -> Array | None:
+        """Displacements (n, 3) where the force of this very touch was found already; at once."""
+        return rest_known(self._shape, touch, young_modulus)
+
     def draw(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
         """Displacements under these fingers; linear until the shape is ready."""
         try:
@@ -99,14 +115,22 @@ class DrawnShape:
             return Met(met.linear, met.linear, 0.0)
         return met
 
-    def finish(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
-        """Displacements under these fingers, after waiting for the shape for a limited time."""
+    def finish(
+        self, fingers: Sequence[FingerLoad], touch: Sequence[FingerLoad], young_modulus: float
+    ) -> Met:
+        """Displacements under these fingers, after waiting for the shape for a limited time; where
+        its own force is felt, at rest under their ``touch``.
+        """
         end = time.monotonic() + PATIENCE
         self._take_made()
         met = self.draw(fingers, young_modulus)
         while self.ready < 1.0 and not self.problem and time.monotonic() < end:
             time.sleep(0.01)
             met = self.draw(fingers, young_modulus)
+        if touch and self.ready == 1.0 and not self.problem:
+            rest = pressed_by(self._shape, touch, young_modulus).displacements
+            if rest is not None:
+                return Met(rest, met.linear, 0.0)
         return met if met.settled else self._meeting.settle(fingers, young_modulus)
 
     def close(self) -> None:

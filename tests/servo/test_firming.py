@@ -129,7 +129,7 @@ def test_at_rest_it_presses_as_without_a_clock(held_body, tip, eventually):
     if tool is not None:
         servo.set_tool(native_tool(body, native, tool), turn, 0)
     servo.follow(path)
-    firming = Firming(servo, body)
+    firming = Firming(servo, body, tool)
 
     def rests():
         before = servo.snapshot().firmness

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import Protocol
 
 import numpy as np
@@ -22,13 +23,14 @@ Array = NDArray[np.float64]
 
 # Places of a triangle that a tool is kept out of, each for a third of its area.
 PLACES = np.array([[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0
-# Pressure over depth of what a tool is let in, times the mean edge of the surface and per pascal.
-PENALTY = 30.0
+# Pressure over depth of what a tool is let in, times the mean edge of the surface and per pascal:
+# to begin with, and at the end.
+PENALTIES = (30.0, 300.0)
 # A held point's spring, per pascal and metre of edge.
 HOLD = 300.0
 # Forces left unbalanced, as a share of the mean of what presses.
 RESIDUAL_SHARE = 1e-4
-MOST_ITERATIONS = 60
+MOST_ITERATIONS = 120
 SUFFICIENT_DECREASE = 1e-4
 SHORTEST_PART = 1e-4
 
@@ -123,9 +125,9 @@ class PressedRubber:
         spread = _Spread(
             np.repeat(triangles, 3, axis=0), np.tile(PLACES, (len(triangles), 1)), self.solid
         )
-        yield from self._followed(
-            spread, (_Penalty(tool, PENALTY / self.edge * shares) for tool in tools)
-        )
+        firm = [penalty / self.edge * shares for penalty in PENALTIES]
+        contacts = (_Penalty(tool, penalty) for tool in tools for penalty in firm)
+        yield from islice(self._followed(spread, contacts), 1, None, len(firm))
 
     def by_point(self, triangle: int, alpha: Array, ways: Array) -> Iterator[Pressed]:
         """The body with a place of a surface triangle held where each of ``ways`` (k, 3) leads.

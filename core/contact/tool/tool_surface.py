@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ...body.imprinted_body import ImprintedBody
+from ...body.imprinted_body import ImprintedBody, as_touched
 from ...body.soft_body import SoftBody
 from ..near_field.compliance_beneath import NearCorrection, near_correction
 from ..near_field.contact_points import ContactPoints, contact_points, spacing_on
@@ -41,12 +41,10 @@ def surface_and_correction(body: SoftBody, tool: Tool) -> Touchable:
 
 
 def _imprinted(points: ContactPoints, body: ImprintedBody) -> ContactPoints:
-    """The points of a body at rest where its imprint has them: as it is drawn, since the triangles
-    of the body are coarser than a dent.
-    """
+    """The points of a body at rest where its imprint has them."""
     corner_normals = smooth_corner_normals(body.mesh)[points.triangles]
     return replace(
         points,
-        positions=points.positions + body.imprint.at(points.positions),
+        positions=as_touched(body, points.positions),
         normals=unit(np.einsum("pc,pcx->px", points.alphas, corner_normals)),
     )

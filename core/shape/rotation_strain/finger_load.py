@@ -3,24 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...body.soft_body import SoftBody
+from ...contact.tool.pose import Pose
+from ...contact.tool.tools import Tool
+from ..solid.free_solid import FreeSolid
+
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A tool where it is, and the body as it touches it, with its imprint."""
+
+    tool: Tool
+    pose: Pose
+    body: SoftBody
 
 
 @dataclass(frozen=True, eq=False)
 class FingerLoad:
     """Load of one finger by the linear force law: forces (k, 3), N, on nodes (k,) of the mesh.
 
-    ``sticks``: a point, which moves its place by all of its way; a tool's places may slide.
+    ``sticks``: a point, which moves its place by all of its way; a tool's places may slide. ``by``:
+    the tool, where it is known and slides without friction.
     """
 
     nodes: NDArray[np.int64]
     forces: Array
     sticks: bool = False
+    by: Setting | None = None
+
+    def times(self, share: float) -> FingerLoad:
+        """With so much of its forces."""
+        return replace(self, forces=share * self.forces)
 
     @property
     def weights(self) -> Array:
@@ -32,6 +52,12 @@ class FingerLoad:
         return shares
 
 
+def on_free_nodes(solid: FreeSolid, loads: Sequence[FingerLoad]) -> Array:
+    """All of the loads as forces (f, 3) on the free nodes."""
+    nodes = np.concatenate([load.nodes for load in loads])
+    return solid.on_free_nodes(nodes, np.concatenate([load.forces for load in loads]))
+
+
 def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: float = 0.0) -> bool:
     """Whether the same fingers press on the same nodes, by forces that differ by no more than a
     share of all of them.
@@ -39,6 +65,14 @@ def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: floa
     return len(loads) == len(others) and all(
         one.sticks == other.sticks
         and np.array_equal(one.nodes, other.nodes)
+        and _meet_alike(one.by, other.by)
         and np.abs(one.forces - other.forces).sum() <= share * np.abs(one.forces).sum()
         for one, other in zip(loads, others, strict=True)
     )
+
+
+def _meet_alike(one: Setting | None, other: Setting | None) -> bool:
+    """Whether a tool meets a body as another does; the forces tell whether it does so there."""
+    if one is None or other is None:
+        return one is other
+    return one.tool is other.tool and one.body is other.body

@@ -18,21 +18,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad
+from .beside_tools import beside_tools
+from .finger_load import FingerLoad, on_free_nodes
 from .relaxation import Patterns, Relaxation, Rest
 
 Array = NDArray[np.float64]
 
 # Shares of the depth to which the body is led one after the other, and the one beside the last at
 # which firmness is told.
-DEPTHS, HALF = (0.25, 0.5, 0.75, 1.0), 0.5
+DEPTHS, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), 0.5, 0.75
 # Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
-CLOSE, MOST_STEPS = 0.002, 200
+CLOSE, MOST_STEPS = 0.002, 600
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
 # What carries less than this share of a tool's heaviest node is not led by itself.
@@ -102,6 +105,7 @@ LINEAR = Pressed(Firmness(), 0.0, None)
 class FirmBody:
     """A body whose firmness is looked for."""
 
+    body: SoftBody
     solid: FreeSolid
     relaxation: Relaxation
 
@@ -113,30 +117,64 @@ class FirmBody:
         """
         return self.pressed(loads).firmness
 
-    def pressed(self, loads: Sequence[FingerLoad]) -> Pressed:
-        """The same, and the body at rest there."""
-        whole = _Press.of(self, loads)
-        if whole is None:
+    def pressed(self, loads: Sequence[FingerLoad], ahead: float = 1.0) -> Pressed:
+        """The same, and the body at rest there; ``ahead``, where the press is that much deeper."""
+        energy = self._energy(loads) if loads else 0.0
+        if not energy > 0.0:
             return LINEAR
-        known, rest = self._led(whole)
-        if max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
-            by_nodes = _Press.of(self, loads, by_nodes=True)
-            others, other_rest = self._led(by_nodes or whole)
-            if max(others) > max(known):
-                known, rest = others, other_rest
-        deepest = max(known)
-        told = [(depth, known[depth]) for depth in sorted({0.0, min(HALF, deepest), deepest})]
-        moved = rest.displacements if rest is not None and deepest == DEPTHS[-1] else None
-        return Pressed(_through(told, whole.energy), whole.energy, moved)
+        beside, trust = self._beside(loads, ahead)
+        if trust == 1.0:
+            return replace(beside, energy=energy)
+        led = self._led([one.times(ahead) for one in loads])
+        return replace(_between(led, beside, trust) if trust else led, energy=energy)
 
-    def on_surface(self, loads: Sequence[FingerLoad]) -> Pressed:
+    def on_surface(self, loads: Sequence[FingerLoad], ahead: float = 1.0) -> Pressed:
         """The same with the displacements of the free surface nodes alone."""
-        found = self.pressed(loads)
+        found = self.pressed(loads, ahead)
         if found.displacements is None:
             return found
         return replace(found, displacements=found.displacements[self.solid.surface])
 
-    def _led(self, press: _Press) -> tuple[dict[float, float], Rest | None]:
+    def _energy(self, loads: Sequence[FingerLoad]) -> float:
+        forces = on_free_nodes(self.solid, loads)
+        return 0.5 * float((forces * self.solid.linear(forces)).sum())
+
+    def _beside(self, loads: Sequence[FingerLoad], depth: float) -> tuple[Pressed, float]:
+        """By tools that slide: of their contact with the body itself, and how far that is trusted;
+        not at all where there is none.
+        """
+        at = partial(beside_tools, self.body, self.solid, self.relaxation, loads)
+        half = at(HALF * depth)
+        whole = at(depth, None if half is None else half.kept.linear / HALF)
+        if whole is None and half is not None:
+            further = at(BETWEEN * depth, half.kept.linear * (BETWEEN / HALF))
+            whole = further and at(depth, further.kept.linear / BETWEEN)
+        if whole is None:
+            return LINEAR, 0.0
+        told = [(whole.energy, whole.share)]
+        if half is not None and half.energy < whole.energy:
+            told.insert(0, (half.energy, half.share))
+        found = Pressed(_through(told), whole.energy, whole.kept.displacements)
+        return found, whole.trust
+
+    def _led(self, loads: Sequence[FingerLoad]) -> Pressed:
+        """By forces that lead it to where a linear body would be."""
+        whole = _Press.of(self, loads)
+        known, rest = self._led_by(whole)
+        if max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
+            others, other_rest = self._led_by(_Press.of(self, loads, by_nodes=True))
+            if max(others) > max(known):
+                known, rest = others, other_rest
+        deepest = max(known)
+        is_whole = deepest == DEPTHS[-1]
+        told = [
+            (depth * depth * whole.energy, known[depth])
+            for depth in sorted({min(HALF, deepest), deepest} - {0.0})
+        ]
+        moved = rest.displacements if rest is not None and is_whole else None
+        return Pressed(replace(_through(told), is_whole=is_whole), whole.energy, moved)
+
+    def _led_by(self, press: _Press) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and the deepest."""
         known, rest = {0.0: 1.0}, None
         before = 0.0
@@ -155,18 +193,35 @@ class FirmBody:
         return known, rest
 
 
-def _through(known: Sequence[tuple[float, float]], energy: float) -> Firmness:
-    """The parabola through firmness at shares of the depth, the first 1 at none."""
-    depth, last = known[-1]
-    if depth == 0.0:
-        return Firmness(is_whole=False)
-    if len(known) == 2:
-        slope, bend = (last - 1.0) / depth, 0.0
-    else:
-        rows = [[share, share * share] for share, _ in known[1:]]
-        slope, bend = np.linalg.solve(rows, [firm - 1.0 for _, firm in known[1:]])
-    reach = depth * depth * energy
-    return Firmness(slope / math.sqrt(energy), bend / energy, reach, depth == DEPTHS[-1])
+def _between(one: Pressed, other: Pressed, share: float) -> Pressed:
+    """Of two answers about a press, so much of the other; all of it where the first is none."""
+    if one.displacements is None or other.displacements is None:
+        return other
+
+    def at_reach(of: Firmness) -> Array:
+        return np.array([of.root * math.sqrt(of.reach), of.whole * of.reach, of.reach])
+
+    parts = (1.0 - share) * at_reach(one.firmness) + share * at_reach(other.firmness)
+    root, whole, reach = parts.tolist()
+    return Pressed(
+        Firmness(root / math.sqrt(reach), whole / reach, reach),
+        other.energy,
+        (1.0 - share) * one.displacements + share * other.displacements,
+    )
+
+
+def _through(known: Sequence[tuple[float, float]]) -> Firmness:
+    """The parabola over the depth through none, one or two energies with the firmness there,
+    ascending, and 1 at no energy.
+    """
+    if not known:
+        return Firmness()
+    reach = known[-1][0]
+    powers = [0.5, 1.0][: len(known)]
+    rows = [[(energy / reach) ** power for power in powers] for energy, _ in known]
+    found = np.linalg.solve(rows, [min(max(share, LEAST), MOST) - 1.0 for _, share in known])
+    root, whole = [*found, 0.0][:2]
+    return Firmness(root / math.sqrt(reach), whole / reach, reach)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,14 +246,9 @@ class _Press:
     is_of_tools: bool
 
     @classmethod
-    def of(
-        cls, body: FirmBody, loads: Sequence[FingerLoad], by_nodes: bool = False
-    ) -> _Press | None:
+    def of(cls, body: FirmBody, loads: Sequence[FingerLoad], by_nodes: bool = False) -> _Press:
         """Of these loads; ``by_nodes``: each node of a tool's is led by itself."""
         patterns: list[Array] = []
-        pressed = [body.solid.on_free_nodes(load.nodes, load.forces) for load in loads]
-        if not any(one.any() for one in pressed):
-            return None
 
         def add(nodes: NDArray[np.int64], forces: Array) -> None:
             whole = body.solid.on_free_nodes(nodes, forces)
@@ -216,7 +266,7 @@ class _Press:
             else:
                 add(load.nodes, load.forces)
         made = Patterns(np.stack(patterns), np.stack([body.solid.linear(one) for one in patterns]))
-        whole: Array = np.sum(pressed, axis=0)
+        whole = on_free_nodes(body.solid, loads)
         linear = body.solid.linear(whole)
         ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
         work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())

@@ -22,6 +22,9 @@ from .firmness import LINEAR, FirmBody, Pressed
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
+# Forces that change by no more than this share are those of a press that rests.
+STILL = 1e-6
+
 
 @dataclass(frozen=True)
 class FramePlan:
@@ -68,7 +71,7 @@ class RotationStrainShape:
         self._share = 0.0
         self._is_ended = False
         self._pressing = Lock()
-        self._last: tuple[Sequence[FingerLoad], Pressed] | None = None
+        self._last: tuple[Sequence[FingerLoad], float, Pressed] | None = None
         worker = ThreadPoolExecutor(1, thread_name_prefix="palpate-rotation-strain")
         self._made: Future[_Made | None] = worker.submit(self._make)
         worker.shutdown(wait=False)
@@ -104,19 +107,32 @@ class RotationStrainShape:
         forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
         return made.displacements(np.asarray(nodes).reshape(-1), forces)
 
-    def pressed(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
+    def pressed(
+        self, loads: Sequence[FingerLoad], young_modulus: float, ahead: float = 1.0
+    ) -> Pressed:
         """How firmly it presses back, see :func:`.shapes.firmness_of`, and where its free surface
         comes to rest; linear and nowhere until prepared, and for a body of too many nodes.
         """
         made = self._made.result() if self._made.done() else None
         if made is None or made.firm is None:
             return LINEAR
-        unit = [FingerLoad(load.nodes, load.forces / young_modulus, load.sticks) for load in loads]
+        unit = [load.times(1.0 / young_modulus) for load in loads]
         with self._pressing:
             # What is drawn and what is felt are asked for one after the other.
-            if self._last is None or not alike(self._last[0], unit):
-                self._last = unit, made.firm.on_surface(unit)
-            return self._last[1]
+            known = self._last
+            if known is None or known[1] != ahead or not alike(known[0], unit):
+                self._last = known = unit, ahead, made.firm.on_surface(unit, ahead)
+            return known[2]
+
+    def known(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
+        """The same where it has been found for this very press, at once; else that of a linear
+        body.
+        """
+        known = self._last
+        unit = [load.times(1.0 / young_modulus) for load in loads]
+        if known is None or known[1] != 1.0 or not alike(known[0], unit, STILL):
+            return LINEAR
+        return known[2]
 
     def wait_for(self, nodes: NDArray[np.int64]) -> None:  # noqa: ARG002 - of no single place
         """Return when the preparation is done; it is the same for all ``nodes``.
@@ -145,7 +161,7 @@ class RotationStrainShape:
         if not self._goes_on(0.6):
             return None
         relaxing = relaxation(solid)
-        firm = FirmBody(solid, relaxing.another())
+        firm = FirmBody(self._body, solid, relaxing.another())
         if self._is_ended:
             return None
         if self._plan.lattice_nodes:

@@ -1,45 +1,24 @@
 //! `Relaxation`: the body's own material, relaxed under forces.
 
+mod given;
+
 use std::sync::{Arc, Mutex};
 
-use numpy::{
-    AllowTypeChange, PyArray1, PyArrayLike1, PyArrayLike2, PyArrayMethods, PyReadonlyArray1,
-};
-use pyo3::exceptions::PyValueError;
+use numpy::{AllowTypeChange, PyArrayLike3};
 use pyo3::prelude::*;
 
-use crate::python::vectors::{Matrix, misshaped};
+use self::given::{
+    GivenFactor, GivenLaw, GivenPlaces, GivenSprings, GivenTerm, GivenTool, Numbers, Rows, factor,
+    table, unfit,
+};
+use crate::python::vectors::{self, Matrix};
 use crate::servo::paced::locked;
-use crate::solid::domains::Domains;
-use crate::solid::factor::Factor;
 use crate::solid::law::Law;
+use crate::solid::load::against::Against;
 use crate::solid::load::{Led, Load};
 use crate::solid::relaxation::{Relaxation as Relaxing, Solid};
-use crate::solid::strained::{Springs, Strained, Term};
+use crate::solid::strained::Strained;
 use crate::solid::warp::Warp;
-
-type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
-type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
-type Counts<'py> = PyReadonlyArray1<'py, i64>;
-/// Where the entries of each domain begin, their nodes and gradients; Lame's parameters times volumes.
-type GivenTerm<'py> = (
-    Counts<'py>,
-    Counts<'py>,
-    Rows<'py>,
-    Numbers<'py>,
-    Numbers<'py>,
-);
-/// Order of elimination, sizes of fronts, lengths of boundaries, boundaries, entries.
-type GivenFactor<'py, T> = (
-    Counts<'py>,
-    Counts<'py>,
-    Counts<'py>,
-    Counts<'py>,
-    PyReadonlyArray1<'py, T>,
-);
-/// Shares and exponents of stretches and of volumes, and whether what is pulled goes on as a parabola.
-type GivenLaw = (Vec<(f64, f64)>, Vec<(f64, f64)>, bool);
-type GivenSprings<'py> = (Counts<'py>, Counts<'py>, Numbers<'py>);
 
 #[pyclass(frozen, module = "palpate_servo")]
 pub struct Relaxation {
@@ -64,11 +43,11 @@ impl Relaxation {
         }
         let first_shear = terms[0].4.as_array().to_vec();
         let made = (terms.iter())
-            .map(|term| self::term(term, nodes))
+            .map(|term| given::term(term, nodes))
             .collect::<PyResult<Vec<_>>>()?;
         let weights = made[0].domains.in_fours(&first_shear);
         let springs = springs
-            .map(|given| self::springs(&given, nodes))
+            .map(|given| given::springs(&given, nodes))
             .transpose()?;
         let solid = Solid {
             strained: Strained {
@@ -90,7 +69,7 @@ impl Relaxation {
 
     fn warped<'py>(&self, py: Python<'py>, linear: Rows<'_>) -> PyResult<Matrix<'py>> {
         let mut relaxing = locked(&self.inner);
-        relaxing.linear = self::rows("linear", &linear, relaxing.solid().nodes())?;
+        relaxing.linear = given::rows("linear", &linear, relaxing.solid().nodes())?;
         relaxing.warp();
         table(py, &relaxing.warped)
     }
@@ -103,8 +82,8 @@ impl Relaxation {
     ) -> PyResult<Matrix<'py>> {
         let mut relaxing = locked(&self.inner);
         let nodes = relaxing.solid().nodes();
-        relaxing.linear = self::rows("linear", &linear, nodes)?;
-        let forces = self::rows("forces", &forces, nodes)?;
+        relaxing.linear = given::rows("linear", &linear, nodes)?;
+        let forces = given::rows("forces", &forces, nodes)?;
         let mut pulled = vec![[0.0; 3]; nodes];
         relaxing.warp();
         relaxing.pull_back(&forces, &mut pulled);
@@ -117,7 +96,7 @@ impl Relaxation {
         displacements: Rows<'_>,
     ) -> PyResult<(f64, Matrix<'py>)> {
         let solid = locked(&self.inner).solid().clone();
-        let moved = self::rows("displacements", &displacements, solid.nodes())?;
+        let moved = given::rows("displacements", &displacements, solid.nodes())?;
         let mut forces = vec![[0.0; 3]; solid.nodes()];
         let energy = solid.strained.energy_and_forces(&moved, &mut forces);
         Ok((energy, table(py, &forces)?))
@@ -133,16 +112,17 @@ impl Relaxation {
         turning: Option<Rows<'_>>,
     ) -> PyResult<Matrix<'py>> {
         let nodes = self.nodes(py);
-        let linear = self::rows("linear", &linear, nodes)?;
-        let dead = self::rows("forces", &forces, nodes)?;
+        let linear = given::rows("linear", &linear, nodes)?;
+        let dead = given::rows("forces", &forces, nodes)?;
         let turning = turning
-            .map(|t| self::rows("turning", &t, nodes))
+            .map(|t| given::rows("turning", &t, nodes))
             .transpose()?;
         let warped = py.detach(|| {
             let load = Load {
                 dead: &dead,
                 turning: turning.as_deref(),
                 led: None,
+                against: None,
             };
             let mut relaxing = locked(&self.inner);
             relaxing.relax(&linear, &load, steps);
@@ -168,10 +148,10 @@ impl Relaxation {
         let nodes = self.nodes(py);
         let fields = |name: &str, given: &[Rows<'_>]| {
             (given.iter())
-                .map(|one| self::rows(name, one, nodes))
+                .map(|one| given::rows(name, one, nodes))
                 .collect::<PyResult<Vec<_>>>()
         };
-        let linear = self::rows("linear", &linear, nodes)?;
+        let linear = given::rows("linear", &linear, nodes)?;
         let (patterns, moved) = (fields("patterns", &patterns)?, fields("moved", &moved)?);
         let response = response.as_array().iter().copied().collect();
         let wanted = wanted.as_array().to_vec();
@@ -195,6 +175,56 @@ impl Relaxation {
             rest.steps,
         ))
     }
+
+    #[expect(clippy::too_many_arguments, reason = "Python's names tell them apart")]
+    fn kept_out<'py>(
+        &self,
+        py: Python<'py>,
+        linear: Rows<'_>,
+        tools: Vec<GivenTool<'_>>,
+        places: GivenPlaces<'_>,
+        compliance: PyArrayLike3<'_, f64, AllowTypeChange>,
+        work: f64,
+        close: f64,
+        most_steps: usize,
+    ) -> PyResult<(Matrix<'py>, Matrix<'py>, Matrix<'py>, f64, usize)> {
+        let nodes = self.nodes(py);
+        let linear = given::rows("linear", &linear, nodes)?;
+        let tools = (tools.iter())
+            .map(|(tool, position, rotation)| {
+                Ok((tool.inner.clone(), vectors::pose(*position, *rotation)?))
+            })
+            .collect::<PyResult<Vec<_>>>()?;
+        let compliance = vectors::matrices("compliance", &compliance)?;
+        let known = compliance.len().isqrt();
+        let mut against = Against::new(
+            given::places(&places, nodes, known)?,
+            tools,
+            compliance,
+            known,
+            nodes,
+        )
+        .ok_or_else(unfit)?;
+        let (linear, warped, pushes, rest) = py.detach(|| {
+            let mut relaxing = locked(&self.inner);
+            let rest = relaxing.keep_out(&linear, &mut against, (work, close), most_steps);
+            let pushes = against.pushes(&relaxing.warped);
+            (
+                relaxing.linear.clone(),
+                relaxing.warped.clone(),
+                pushes,
+                rest,
+            )
+        });
+        let pushes = vectors::table(py, pushes.into_iter())?;
+        Ok((
+            table(py, &linear)?,
+            table(py, &warped)?,
+            pushes,
+            rest.left,
+            rest.steps,
+        ))
+    }
 }
 
 impl Relaxation {
@@ -210,87 +240,6 @@ impl Relaxation {
     }
 }
 
-fn rows(name: &str, array: &Rows<'_>, nodes: usize) -> PyResult<Vec<[f64; 3]>> {
-    let array = array.as_array();
-    if array.shape() != [nodes, 3] {
-        let wanted = format!("({nodes}, 3), a row for each free node");
-        return Err(misshaped(name, array.shape(), wanted));
-    }
-    let rows = array.rows().into_iter();
-    Ok(rows.map(|row| [row[0], row[1], row[2]]).collect())
-}
-
-fn table<'py>(py: Python<'py>, field: &[[f64; 3]]) -> PyResult<Matrix<'py>> {
-    PyArray1::from_slice(py, field.as_flattened()).reshape([field.len(), 3])
-}
-
-fn term((starts, nodes, slopes, lame, shear): &GivenTerm<'_>, count: usize) -> PyResult<Term> {
-    let starts = sizes(starts)?;
-    let nodes: Vec<u32> = below(nodes, count)?;
-    let slopes = rows("gradients", slopes, nodes.len())?;
-    let domains = starts.len().saturating_sub(1);
-    let (lame, shear) = (lame.as_array().to_vec(), shear.as_array().to_vec());
-    let is_rising = starts.windows(2).all(|pair| pair[0] <= pair[1]);
-    let is_whole = starts.first() == Some(&0) && starts.last() == Some(&nodes.len());
-    if !(is_rising && is_whole && lame.len() == domains && shear.len() == domains) {
-        return Err(unfit());
-    }
-    let domains = Domains::new(&starts, &nodes, &slopes);
-    let moduli = (domains.in_fours(&lame).into_iter())
-        .zip(domains.in_fours(&shear))
-        .collect();
-    Ok(Term { domains, moduli })
-}
-
-fn factor<T: numpy::Element + Copy>(
-    (order, fronts, reaches, boundaries, entries): &GivenFactor<'_, T>,
-) -> PyResult<Factor<T>> {
-    let order_length = order.as_slice()?.len();
-    let sizes: Vec<_> = (self::sizes(fronts)?.into_iter())
-        .zip(self::sizes(reaches)?)
-        .collect();
-    let (order, boundaries) = (
-        below(order, order_length)?,
-        below(boundaries, order_length)?,
-    );
-    Factor::new(order, &sizes, boundaries, entries.as_slice()?.to_vec()).ok_or_else(unfit)
-}
-
-fn springs((starts, columns, values): &GivenSprings<'_>, nodes: usize) -> PyResult<Springs> {
-    let (starts, columns) = (sizes(starts)?, below(columns, nodes)?);
-    let values = values.as_array().to_vec();
-    let is_whole = starts.len() == nodes + 1
-        && starts.windows(2).all(|pair| pair[0] <= pair[1])
-        && starts[nodes] == columns.len()
-        && columns.len() == values.len();
-    if is_whole {
-        Ok(Springs::new(starts, columns, values))
-    } else {
-        Err(unfit())
-    }
-}
-
-fn sizes(numbers: &Counts<'_>) -> PyResult<Vec<usize>> {
-    let numbers = numbers.as_slice()?.iter();
-    numbers
-        .map(|&one| usize::try_from(one).map_err(|_| unfit()))
-        .collect()
-}
-
-fn below(numbers: &Counts<'_>, count: usize) -> PyResult<Vec<u32>> {
-    let numbers = numbers.as_slice()?.iter();
-    numbers
-        .map(|&one| match usize::try_from(one) {
-            Ok(number) if number < count => Ok(number as u32),
-            _ => Err(unfit()),
-        })
-        .collect()
-}
-
 fn of_powers((stretches, volume, is_straight): GivenLaw) -> Option<Law> {
     Law::of(&stretches, &volume, is_straight)
-}
-
-fn unfit() -> PyErr {
-    PyValueError::new_err("arrays of a solid do not fit together; make them of one body")
 }

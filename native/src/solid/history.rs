@@ -102,9 +102,7 @@ impl History {
             let more = change.share - ratio(dot(&change.gradient, direction), change.work);
             add(direction, more, &change.place);
         }
-        for vector in direction {
-            *vector = vector.map(|x| -x);
-        }
+        scale(direction, -1.0);
     }
 }
 
@@ -145,5 +143,12 @@ widely! {
         for (to, other) in to.as_flattened_mut().iter_mut().zip(other.as_flattened()) {
             *to += times * other;
         }
+    }
+}
+
+/// Becomes so much of itself.
+pub fn scale(field: &mut Nodal, by: f64) {
+    for vector in field {
+        *vector = vector.map(|x| by * x);
     }
 }

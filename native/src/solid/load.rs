@@ -1,4 +1,8 @@
-//! What presses a body: forces, and what it is led to.
+//! What presses a body: forces, what it is led to, and tools that it is kept out of.
+
+pub mod against;
+
+use against::Against;
 
 use super::domains::Nodal;
 use super::history::{Field, add, dot};
@@ -15,6 +19,8 @@ pub struct Load<'a> {
     pub turning: Option<&'a Nodal>,
     /// What is led beside.
     pub led: Option<&'a Led>,
+    /// And kept out of.
+    pub against: Option<&'a Against>,
 }
 
 impl<'a> Load<'a> {
@@ -24,6 +30,17 @@ impl<'a> Load<'a> {
             dead: none,
             turning: None,
             led: Some(led),
+            against: None,
+        }
+    }
+
+    /// What it is kept out of, beside forces `none`.
+    pub(super) fn keeping_out(none: &'a Nodal, against: &'a Against) -> Self {
+        Self {
+            dead: none,
+            turning: None,
+            led: None,
+            against: Some(against),
         }
     }
 
@@ -31,7 +48,8 @@ impl<'a> Load<'a> {
     pub(super) fn energy(&self, linear: &Nodal, warped: &Nodal) -> f64 {
         let turning = self.turning.map_or(0.0, |forces| dot(forces, linear));
         let led = self.led.map_or(0.0, |led| led.energy(warped));
-        led - dot(self.dead, warped) - turning
+        let against = self.against.map_or(0.0, |against| against.energy(warped));
+        led + against - dot(self.dead, warped) - turning
     }
 
     /// What all of it does on the linear displacement that belongs to it.
@@ -48,6 +66,9 @@ impl<'a> Load<'a> {
             for (pull, pattern) in led.pulls(warped).iter().zip(&led.patterns) {
                 add(forces, -pull, pattern);
             }
+        }
+        if let Some(against) = self.against {
+            against.take_from(warped, forces);
         }
     }
 

@@ -11,12 +11,14 @@
 //! quasi-Newton steps from K^-1 come close in very few: where steps in u have to undo each rotation's false
 //! stretch, these turn what they move.
 
+mod beside;
+
 use std::sync::Arc;
 
 use super::domains::Nodal;
 use super::factor;
 use super::factor::Factor;
-use super::history::{Field, History, add, dot};
+use super::history::{Field, History, add, dot, scale};
 use super::load::{Led, Load};
 use super::search::{bound, is_enough, shorter, step_length};
 use super::strained::Strained;
@@ -249,10 +251,16 @@ impl Relaxation {
     /// Finds the direction; what it promises, minus its slope.
     fn direct(&mut self, load: &Load<'_>) -> f64 {
         let (stiffness, room) = (&self.solid.stiffness, &mut self.stiffness);
+        let (held, back) = (&mut self.forces, &mut self.start);
         let solve = |right: &Nodal, solution: &mut Nodal| {
             stiffness.solve_freedoms(right, room, solution);
             if let Some(led) = load.led {
                 led.hold(solution);
+            }
+            if let Some(against) = load.against {
+                against.held_back(solution, held);
+                stiffness.solve_freedoms(held, room, back);
+                add(solution, -1.0, back);
             }
         };
         (self.history).direct(&self.slope, &mut self.spare, &mut self.direction, solve);
@@ -288,11 +296,5 @@ impl Relaxation {
         self.pull_back(&forces, &mut slope);
         (self.slope, self.forces) = (slope, forces);
         load.take_turning_from(&mut self.slope);
-    }
-}
-
-fn scale(field: &mut Nodal, by: f64) {
-    for vector in field {
-        *vector = vector.map(|x| by * x);
     }
 }

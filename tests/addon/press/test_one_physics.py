@@ -172,7 +172,7 @@ def by_servo(drawn, thing, blender, places, bys):
             for finger, place in enumerate(here):
                 servo.set_target(place, finger=finger)
             rested(servo, here)
-        firming = part("core.servo.firming").Firming(servo, body)
+        firming = part("core.servo.firming").Firming(servo, body, tools[0])
         shots = firm(servo, firming, real, young)
     if tools[0] is not None:
         return [shot.contact_force for shot in shots], [touch.force for touch in blender]

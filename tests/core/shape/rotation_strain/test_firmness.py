@@ -19,8 +19,9 @@ LENGTH = 5.0
 
 
 def firm_body(mesh, fixed, poisson_ratio=0.45, formulation="smoothed"):
-    solid = FreeSolid.of(bare_body(mesh, fixed, poisson_ratio, formulation))
-    return FirmBody(solid, relaxation(solid))
+    body = bare_body(mesh, fixed, poisson_ratio, formulation)
+    solid = FreeSolid.of(body)
+    return FirmBody(body, solid, relaxation(solid))
 
 
 @pytest.fixture(scope="module")
