@@ -73,17 +73,24 @@ class Suspension:
         begin = self.after[0]["time"]
         if any(tick["output"] > 0.0 for tick in self.after[:STEADY_TICKS]):
             found.append("force before the ticks were steady")
-        if not self.ramp or any(
-            tick["output"] > number * PERIOD / RAMP_SECONDS * (tick["wanted"] + DAMPING) + ROUNDING
-            for number, tick in enumerate(self.ramp, start=1)
-        ):
-            found.append("no ramp")
+        found += self._ramp_problem()
         at_once = [tick for tick in self.after if tick["time"] - begin < BURST_SECONDS]
         if len(at_once) > BURST_SECONDS / PERIOD + 2:
             found.append("a burst of ticks")
         if self.counted < 1:
             found.append("not counted")
         return found + device_problems(self.device)
+
+    def _ramp_problem(self) -> list[str]:
+        if not self.ramp:
+            return ["no ramp"]
+        for number, tick in enumerate(self.ramp, start=1):
+            allowed = number * PERIOD / RAMP_SECONDS * (tick["wanted"] + DAMPING) + ROUNDING
+            if tick["output"] > allowed:
+                return [
+                    f"{tick['output']:.4f} N, {allowed:.4f} allowed in tick {number} of the ramp"
+                ]
+        return []
 
 
 def device_problems(report: dict[str, Any]) -> list[str]:
