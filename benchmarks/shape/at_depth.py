@@ -68,20 +68,17 @@ ISSUED = {1 / 12: 5.56, 1 / 3: 43.9, 1 / 2: 78.9, 3 / 4: 140.6, 1.0: 208.4, 4 / 
 AGREEMENT = 0.11
 # The real force: to half a radius and a fifth of the thickness, and beyond.
 NEAR, FAR = 0.05, 0.10
-# Farther off: a wall on the mouse's nose, and balls hardly wider than a triangle.
-BEYOND = ("mouse-1.7k, wall, 0.2", "mouse-1.7k, ball 1, 0.5", "mouse-1.7k, ball 2, 0.5")
-# The drawn surface, and where it is farther off.
+# Their triangles are as wide as their balls' contacts.
+COARSE = ("mouse-1.7k", "drumstick")
+# Farther off: a ball hardly wider than a triangle.
+BEYOND = ("mouse-1.7k, ball 2, 0.5",)
+# The drawn surface, and where it is farther off: where few places press, and where points crush.
 DRAWN = 0.03
 DRAWN_BEYOND = (
-    "mouse-1.7k, ball 1, 0.5",
-    "mouse-1.7k, ball 2, 0.5",
-    "drumstick, ball 1, 0.5",
-    "drumstick, ball 2, 0.5",
-    "mouse-1.7k, ball 2, 1",
-    "mouse-1.7k, point 1, 0.4",
-    "mouse-1.7k, point 2, 0.4",
-    "drumstick, point 1, 0.4",
-    "drumstick, point 2, 0.4",
+    "cube, ball 2, 0.5",
+    "cube, wall, 0.4",
+    *(f"{body}, ball {n}, {depth:g}" for body in COARSE for n in (1, 2) for depth in BALL_DEPTHS),
+    *(f"{body}, point {n}, 0.4" for body in COARSE for n in (1, 2)),
 )
 
 
