@@ -27,9 +27,7 @@ from ...core.shape.shapes import shape
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..rest.floor_options import add_floor
-from ..rest.laid_body import LaidBody, laid_body
-from ..rest.laid_scene import LaidScene, laid_scene
-from ..scene.scene_file import is_scene
+from ..rest.laid_body import laid_body
 from .from_above import highest_place, press_from_above, vector
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
@@ -52,7 +50,7 @@ DESCRIPTION = (
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
-    add_body(parser, or_scene=True)
+    add_body(parser)
     device = parser.add_mutually_exclusive_group(required=True)
     device.add_argument("--port", metavar="PORT", help="a device that speaks the link")
     device.add_argument(
@@ -111,16 +109,15 @@ def run(arguments: argparse.Namespace) -> int:
         raise PalpateError("--seconds: the time must be more than 0 s and have an end")
     if arguments.record is not None:
         _check_recording(arguments.record, arguments.seconds)
-    others: list[str] = arguments.second_port
-    laid = _laid(arguments, 1 + len(others))
-    body, tools = laid.body, laid.tools
+    body = body_file.load(arguments.body)
     young_modulus = modulus_of(arguments, body)
+    others: list[str] = arguments.second_port
+    laid = laid_body(arguments, body, young_modulus, whole=bool(others))
     with ExitStack() as stack:
         simulated = None
         port = arguments.haply if arguments.port is None else arguments.port
         if arguments.simulate:
-            tool = tools[0] if tools else None
-            hand = press_from_above(body, young_modulus, laid.placement, tool)
+            hand = press_from_above(body, young_modulus, laid.placement)
             simulated = stack.enter_context(SimulatedDevice(hand))
             port = simulated.port
         _check_ports([port, *others])
@@ -130,7 +127,6 @@ def run(arguments: argparse.Namespace) -> int:
         stack.callback(made.close)
         made.wait_for(np.zeros(0, dtype=np.int64))
         servo = servo_on(laid.native, settings, rate_hz=arguments.rate, prop=laid.prop)
-        laid.equip(servo)
         firming = Firming(servo, body)
         stack.callback(firming.close)
         stack.callback(servo.stop)
@@ -159,13 +155,6 @@ def run(arguments: argparse.Namespace) -> int:
             # The report survives a file that cannot be written.
             print(json.dumps(report) if arguments.json else for_people(report))
     return 0
-
-
-def _laid(arguments: argparse.Namespace, fingers: int) -> LaidBody | LaidScene:
-    if is_scene(arguments.body):
-        return laid_scene(arguments, fingers)
-    body = body_file.load(arguments.body)
-    return laid_body(arguments, body, modulus_of(arguments, body), whole=fingers > 1)
 
 
 def _check_recording(path: Path, seconds: float) -> None:

@@ -14,7 +14,6 @@ from palpate_servo import (
     LinkDevice,
     Pointer,
     Prop,
-    PropAmong,
     Servo,
     Snapshot,
     device_coupling,
@@ -44,7 +43,6 @@ __all__ = [
     "LinkDevice",
     "Pointer",
     "Prop",
-    "PropAmong",
     "Servo",
     "Snapshot",
     "device_coupling",
@@ -66,7 +64,7 @@ def servo_on(
     rate_hz: int = 1000,
     max_force: float = 3.0,
     record_seconds: float = 10.0,
-    prop: Prop | PropAmong | None = None,
+    prop: Prop | None = None,
 ) -> Servo:
     """Servo for a native body, ready to be started with a pointer or a serial device.
 
@@ -89,8 +87,7 @@ def servo_on(
     max_force : newton; the clamp on the force of any device, unless ``settings`` have one.
     record_seconds : length of samples kept until they are read, 0 to 60; their memory is taken at
         the start. ``Servo.start_recording`` keeps more.
-    prop : the same body laid down as one that nobody holds (:func:`native_prop`), or among others
-        that it presses (``Pile.laid``), where only tools feel it; places and forces
+    prop : the same body laid down as one that nobody holds (:func:`native_prop`); places and forces
         are then those in the world, in which ``Snapshot.placement`` tells where the body is, and
         its contact is always consistent.
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::prop::Support;
 use crate::contact::ground::MOST_SUPPORTS;
 use crate::tool::slot::MOST_NODES;
 
@@ -31,11 +32,12 @@ impl Borne {
         &self.nodes[..self.count]
     }
 
-    /// Becomes what bears a body in a tick: forces on its nodes, N in its axes. Allocates nothing.
-    pub fn show(&mut self, tick: u64, forces: impl Iterator<Item = (u32, DVec3)>) {
+    /// Becomes what bears a body in a tick; nothing without supports. Allocates nothing.
+    pub fn show(&mut self, tick: u64, supports: &[Support], young_modulus: f64) {
         (self.tick, self.count) = (tick, 0);
-        for (shown, force) in self.nodes.iter_mut().zip(forces) {
-            *shown = force;
+        let forces = supports.iter().flat_map(|one| one.collider.nodal_forces(0));
+        for (shown, &(node, force)) in self.nodes.iter_mut().zip(forces) {
+            *shown = (node, force * young_modulus);
             self.count += 1;
         }
     }

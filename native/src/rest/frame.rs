@@ -41,8 +41,12 @@ impl Frame {
     /// A pose on the body, as the hand sees it.
     #[inline]
     pub fn pose(&self, pose: &Pose) -> Pose {
-        self.0
-            .map_or(*pose, |placement| placement.pose_to_world(pose))
+        Pose {
+            position: self.place(pose.position),
+            rotation: self.0.map_or(pose.rotation, |placement| {
+                DMat3::from_quat(placement.rotation) * pose.rotation
+            }),
+        }
     }
 
     /// A direction of the body, as the hand sees it.

@@ -10,4 +10,3 @@ pub mod standing;
 pub mod started;
 pub mod starting;
 pub mod thread;
-pub mod told;

@@ -3,4 +3,3 @@
 pub mod bodies;
 pub mod ends;
 pub mod rings;
-mod shown;

@@ -7,12 +7,11 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::products::{add_six, seen_by};
-use crate::algebra::room;
+use super::between::Three;
+use super::contact::Contact;
+use super::member::Member;
+use crate::algebra::wide::{plus_product, widely};
 use crate::contact::mobility::Mobility;
-use crate::pile::between::Three;
-use crate::pile::contact::{Contact, MOST_SHARES};
-use crate::pile::member::Member;
 
 /// A contact as one body has it.
 #[derive(Debug, Clone)]
@@ -26,8 +25,6 @@ struct Side {
     along: Three,
     /// Where the force acts on the body as a whole, m.
     place: DVec3,
-    /// The last of the slots.
-    last: usize,
 }
 
 /// Displacements along the unknowns under forces along these: `at_rest + matrix force`. Keeps its memory.
@@ -43,8 +40,6 @@ pub(super) struct System {
     pub rubs: Vec<usize>,
     /// Of each contact its first unknown aside; none of one that does not rub.
     aside: Vec<Option<usize>>,
-    /// By how much each contact gives way besides, m/N.
-    pub springs: Vec<f64>,
     sides: Vec<Side>,
     /// Slots of a body that carry forces, and their shares.
     shares: Vec<(usize, f64)>,
@@ -63,6 +58,7 @@ impl System {
         contacts: &[Contact],
         chosen: &[usize],
         members: &[Member],
+        mobilities: &[Option<Mobility>],
         (away, rubs): (&[DVec3], impl Fn(usize) -> bool),
     ) {
         let pushes = chosen.len();
@@ -95,37 +91,10 @@ impl System {
         for (body, member) in members.iter().enumerate() {
             self.find_sides(contacts, chosen, body, member);
             self.give_way(member);
-            self.add_motion(member.mobility.as_ref());
-            self.add_rest(member);
+            self.add_motion(mobilities[body].as_ref());
+            self.add_rest(member, mobilities[body].as_ref());
         }
         mirror(&mut self.matrix, pushes, count);
-    }
-
-    /// Has each contact give way by a share more of how far it does along its push.
-    pub(super) fn add_springs(&mut self, shares: &[f64]) {
-        let count = self.at_rest.len();
-        self.springs.clear();
-        for (contact, share) in shares.iter().enumerate() {
-            let own = &mut self.matrix[contact * count + contact];
-            self.springs.push(share * *own);
-            *own += share * *own;
-        }
-    }
-
-    /// Takes all memory that it ever needs for so many contacts.
-    pub(super) fn reserve(&mut self, contacts: usize) {
-        let unknowns = 3 * contacts;
-        self.matrix = room(unknowns * unknowns);
-        self.wrenches = room(6 * unknowns);
-        self.at_rest.reserve(unknowns);
-        self.directions.reserve(contacts);
-        self.rubs.reserve(contacts);
-        self.aside.reserve(contacts);
-        self.springs.reserve(contacts);
-        self.sides.reserve(contacts);
-        self.shares.reserve(MOST_SHARES * contacts);
-        self.sum.reserve(contacts);
-        self.moved.reserve(contacts);
     }
 
     fn find_sides(&mut self, contacts: &[Contact], chosen: &[usize], body: usize, member: &Member) {
@@ -138,11 +107,10 @@ impl System {
             if sign == 0.0 {
                 continue;
             }
-            let (first, mut place, mut last) = (self.shares.len(), DVec3::ZERO, 0);
+            let (first, mut place) = (self.shares.len(), DVec3::ZERO);
             for &(point, share) in contacts[number].shares_on(body) {
                 place += points[point as usize].position * share;
                 self.shares.push((member.slot(point), share));
-                last = last.max(member.slot(point));
             }
             let ways = turn * self.directions[contact] * sign;
             let mut along = [0.0; 12];
@@ -156,12 +124,8 @@ impl System {
                 ways,
                 along,
                 place,
-                last,
             });
         }
-        // What one moves is then asked of slots up to its own last: half of them, all in all.
-        self.sides
-            .sort_unstable_by_key(|side| (side.last, side.contact));
     }
 
     /// The unknowns of a side and their ways on the body.
@@ -176,28 +140,41 @@ impl System {
 
     /// Adds how a body's surface gives way.
     fn give_way(&mut self, member: &Member) {
-        let between = member.between();
+        let (between, slots) = (member.between(), member.slots().len());
         let (mut sum, mut moved) = (
             std::mem::take(&mut self.sum),
             std::mem::take(&mut self.moved),
         );
-        let count = self.at_rest.len();
         for number in 0..self.sides.len() {
             let loaded = &self.sides[number];
             let (own, owns) = self.unknowns(loaded);
-            let ways = own.map(|(_, way)| way / member.young_modulus);
+            let ways = own.map(|(_, way)| way);
             let shares = &self.shares[loaded.slots.clone()];
-            between.move_by(shares, &ways[..owns], loaded.last + 1, &mut sum, &mut moved);
+            between.move_by(shares, &ways[..owns], slots, &mut sum, &mut moved);
+            let (contact, aside) = (loaded.contact, self.aside[loaded.contact]);
             for (other, seen) in self.sides[..=number].iter().enumerate() {
                 let by = seen_by(&self.shares[seen.slots.clone()], &moved, &seen.along);
-                let (theirs, others) = self.unknowns(seen);
-                for (way, &(row, _)) in own[..owns].iter().enumerate() {
-                    // Of the pairs of a contact with itself each once.
-                    let last = if other == number { way + 1 } else { others };
-                    for (l, &(column, _)) in theirs[..last].iter().enumerate() {
-                        let (row, column) = (row.max(column), row.min(column));
-                        self.matrix[row * count + column] += by[4 * way + l];
+                // Rows of the later unknown of each pair; pairs of a contact with itself once.
+                let (first, count) = (seen.contact, self.at_rest.len());
+                self.matrix[contact * count + first] += by[0];
+                if let Some(aside) = aside {
+                    self.matrix[aside * count + first] += by[4];
+                    self.matrix[(aside + 1) * count + first] += by[8];
+                }
+                let Some(column) = self.aside[first] else {
+                    continue;
+                };
+                if other < number {
+                    self.matrix[column * count + contact] += by[1];
+                    self.matrix[(column + 1) * count + contact] += by[2];
+                }
+                if let Some(aside) = aside {
+                    self.matrix[aside * count + column] += by[5];
+                    if other < number {
+                        self.matrix[aside * count + column + 1] += by[6];
                     }
+                    let row = &mut self.matrix[(aside + 1) * count + column..][..2];
+                    (row[0], row[1]) = (row[0] + by[9], row[1] + by[10]);
                 }
             }
         }
@@ -235,8 +212,8 @@ impl System {
     }
 
     /// Adds where the contacts of a body are without forces.
-    fn add_rest(&mut self, member: &Member) {
-        let drift = (member.mobility).map_or(DVec3::ZERO, |mobility| mobility.drift);
+    fn add_rest(&mut self, member: &Member, mobility: Option<&Mobility>) {
+        let drift = mobility.map_or(DVec3::ZERO, |mobility| mobility.drift);
         for side in &self.sides {
             let elastic: DVec3 = (self.shares[side.slots.clone()].iter())
                 .map(|&(slot, share)| member.slots()[slot].moved * share)
@@ -253,6 +230,43 @@ impl System {
     pub(super) fn row(&self, number: usize) -> &[f64] {
         let count = self.at_rest.len();
         &self.matrix[number * count..][..count]
+    }
+}
+
+widely! {
+    /// What moves some slots by three forces, as a contact that they carry by their shares sees it: of
+    /// each force the parts along its three directions.
+    fn seen_by(shares: &[(usize, f64)], moved: &[Three], along: &Three) -> Three {
+        let (mut sum, mut parts) = ([0.0; 12], [0.0; 12]);
+        for &(slot, share) in shares {
+            let moved = &moved[slot];
+            for k in 0..12 {
+                sum[k] = plus_product::<FUSED>(sum[k], share, moved[k]);
+            }
+        }
+        for way in 0..3 {
+            for l in 0..4 {
+                let of = |axis: usize| (sum[4 * way + axis], along[4 * axis + l]);
+                let [(x, by_x), (y, by_y), (z, by_z)] = [of(0), of(1), of(2)];
+                let by_two = plus_product::<FUSED>(x * by_x, y, by_y);
+                parts[4 * way + l] = plus_product::<FUSED>(by_two, z, by_z);
+            }
+        }
+        parts
+    }
+}
+
+widely! {
+    /// Adds six rows, each so many times, to one as far as it reaches.
+    fn add_six(rows: &[f64], count: usize, times: &[f64; 6], to: &mut [f64]) {
+        let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|k: usize| &rows[k * count..][..to.len()]);
+        for i in 0..to.len() {
+            let by_shift = plus_product::<FUSED>(times[0] * a[i], times[1], b[i]);
+            let by_shift = plus_product::<FUSED>(by_shift, times[2], c[i]);
+            let by_turn = plus_product::<FUSED>(times[3] * d[i], times[4], e[i]);
+            let by_turn = plus_product::<FUSED>(by_turn, times[5], f[i]);
+            to[i] += by_shift + by_turn;
+        }
     }
 }
 

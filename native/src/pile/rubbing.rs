@@ -5,29 +5,27 @@
 
 use glam::DVec2;
 
-use super::pace::Pace;
 use super::system::System;
 use crate::algebra::cholesky::dot_within;
 use crate::algebra::wide::{plus_product, widely};
 use crate::tool::complementarity::Complementarity;
 use crate::tool::friction::nearer;
 
+/// Turns of pushes and forces aside, and sweeps of the latter in each.
+const MOST_TURNS: usize = 6;
+const MOST_SWEEPS: usize = 8;
 /// Forces that change by less than this share of the largest have been found.
 const FOUND: f64 = 1e-6;
+/// Work of one solve for the pushes: all that it takes.
+const MOST_WORK: usize = usize::MAX / 4;
 
-/// How contacts rub.
-pub(super) struct Rubbed<'a> {
-    /// Coefficients of those that do.
-    pub friction: &'a [f64],
-    pub pace: Pace,
-}
-
-/// Forces along the unknowns of a system, beginning with these. `slips` is memory.
+/// Forces along the unknowns of a system, beginning with these; `friction` are the coefficients of the
+/// contacts that rub. `slips` is memory.
 pub(super) fn rub(
     system: &System,
     problem: &mut Complementarity,
     forces: &mut [f64],
-    &Rubbed { friction, pace }: &Rubbed<'_>,
+    friction: &[f64],
     slips: &mut Vec<f64>,
 ) {
     let count = system.directions.len();
@@ -38,8 +36,8 @@ pub(super) fn rub(
         }
     }
     problem.forces[..count].copy_from_slice(&forces[..count]);
-    for _ in 0..pace.turns {
-        let by_push = push(system, problem, forces, (count, pace.work));
+    for _ in 0..MOST_TURNS {
+        let by_push = push(system, problem, forces, count);
         if system.rubs.is_empty() {
             return;
         }
@@ -48,7 +46,7 @@ pub(super) fn rub(
         begin_slips(system, &forces[..count], slips);
         let (pushes, asides) = forces.split_at_mut(count);
         let mut by_sweeps = 0.0_f64;
-        for _ in 0..pace.sweeps {
+        for _ in 0..MOST_SWEEPS {
             let change = sweep(system, pushes, asides, friction, slips);
             by_sweeps = by_sweeps.max(change);
             if change <= FOUND * largest {
@@ -62,19 +60,14 @@ pub(super) fn rub(
 }
 
 /// Finds the pushes under the forces aside; by how much one changed at most, N.
-fn push(
-    system: &System,
-    problem: &mut Complementarity,
-    forces: &mut [f64],
-    (count, work): (usize, usize),
-) -> f64 {
+fn push(system: &System, problem: &mut Complementarity, forces: &mut [f64], count: usize) -> f64 {
     problem.gaps[..count].copy_from_slice(&system.at_rest[..count]);
     for (aside, &force) in forces.iter().enumerate().skip(count) {
         if force != 0.0 {
             add(force, &system.row(aside)[..count], &mut problem.gaps);
         }
     }
-    problem.solve(work);
+    problem.solve(MOST_WORK);
     let mut most = 0.0_f64;
     for (force, &found) in forces.iter_mut().zip(&problem.forces[..count]) {
         most = most.max((found - *force).abs());
