@@ -22,8 +22,6 @@ const MOST_TILT: f64 = 50.0 / 180.0 * PI;
 const MORE_WHERE_UNEVEN: f64 = 100.0 / 180.0 * PI;
 /// A push that goes out of the body by more than this cosine has come through a part.
 const OUTWARD: f64 = 0.5;
-/// One that leans so far that it goes into the body by less than this cosine counts by as much less.
-const LEANING: f64 = 0.2;
 
 /// Directions within an angle of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,29 +44,18 @@ impl TiltLimit {
     /// From pushes (along the tool's normals) and the outward normals of the body where they push.
     /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
     /// part would else be felt turned round. Of none, nowhere.
-    ///
-    /// Where pushes lean farther from what they press than the limit, as on an edge that slides off a
-    /// tool's, the limit is as much wider, up to none at all: it comes and goes without a jump.
     pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<Self> {
         let (mut facing, mut most, mut is_through) = (DVec3::ZERO, 0.0, false);
-        let mut all = 0.0;
         for (push, normal) in pushes {
-            let (outward, length) = (push.dot(normal), push.length());
+            let outward = push.dot(normal);
             let into = (-outward).max(0.0);
             facing += normal * into;
             most += into;
-            all += length.min(into / LEANING);
-            is_through |= outward > OUTWARD * length;
+            is_through |= outward > OUTWARD * push.length();
         }
         let length = facing.length();
-        let leaning = if is_through {
-            0.0
-        } else {
-            (1.0 - most / (all * MOST_TILT.cos())).max(0.0)
-        };
-        let uneven = MORE_WHERE_UNEVEN * (1.0 - length / most);
-        let limit = MOST_TILT + uneven + (PI - MOST_TILT) * leaning;
-        (length > 0.0 && limit < PI).then(|| {
+        (length > 0.0).then(|| {
+            let limit = MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most);
             let (sine, cosine) = limit.sin_cos();
             Self {
                 common: Cone {
