@@ -31,15 +31,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import principal
 from .barrier import Derivatives
-from .by_component import Array
-from .law import Stressed
-from .principal import Power, power_less_logarithm, summed
+from .principal import Power, PrincipalLaw, power_less_logarithm, powers, summed
 
 
 @dataclass(frozen=True)
-class Foam:
+class Foam(PrincipalLaw):
     """The law of Ogden and Storakers.
 
     Attributes
@@ -52,33 +49,14 @@ class Foam:
     terms: tuple[Power, ...] = (Power(1.0, 2.0),)
 
     @property
-    def gives_way(self) -> bool:
-        """See :class:`.law.Law`."""
-        return False
-
-    @property
     def volume_exponents(self) -> tuple[float, ...]:
         """Exponents -a b of J, one for each term; none where there is no energy of volume."""
         b = self.poisson_ratio / (1.0 - 2.0 * self.poisson_ratio)
         return tuple(-term.exponent * b for term in self.terms) if b else ()
 
-    def stressed(
-        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
-    ) -> Stressed:
-        """See :class:`.law.Law`."""
-        return principal.stressed(gradient, self._along, self._volume, first_lame, shear_modulus)
-
-    def tangent(
-        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """See :class:`.law.Law`."""
-        return principal.tangent(gradient, self._along, self._volume, first_lame, shear_modulus)
-
     def _along(self, excess: NDArray[np.float64]) -> Derivatives:
         """2/a^2 (l^a - 1 - a ln l) of stretches l = 1 + excess (3, d), summed over the terms."""
-        return summed(
-            (term.share, power_less_logarithm(excess, term.exponent)) for term in self.terms
-        )
+        return powers(self.terms, excess)
 
     def _volume(self, excess: NDArray[np.float64]) -> Derivatives:
         """Energy of J = 1 + excess (d,) over Lame's first parameter, where that is not zero."""
@@ -94,7 +72,7 @@ class Foam:
 
 
 @dataclass(frozen=True)
-class Cells:
+class Cells(PrincipalLaw):
     """The law of foam or fibres at any Poisson's ratio from 0 to 0.5, by constants for 0.
 
     Squeezed, Ogden's and Storakers' for a Poisson's ratio of 0, with half as much of the same
@@ -108,30 +86,11 @@ class Cells:
 
     terms: tuple[Power, ...]
 
-    @property
-    def gives_way(self) -> bool:
-        """See :class:`.law.Law`."""
-        return False
-
-    def stressed(
-        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
-    ) -> Stressed:
-        """See :class:`.law.Law`."""
-        return principal.stressed(gradient, self._along, self._volume, first_lame, shear_modulus)
-
-    def tangent(
-        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """See :class:`.law.Law`."""
-        return principal.tangent(gradient, self._along, self._volume, first_lame, shear_modulus)
-
     def _along(self, excess: NDArray[np.float64]) -> Derivatives:
         """Of stretches 1 + excess (3, d)."""
         squeezed = np.minimum(excess, 0.0)
         pulled = excess - squeezed
-        found = summed(
-            (term.share, power_less_logarithm(squeezed, term.exponent)) for term in self.terms
-        )
+        found = powers(self.terms, squeezed)
         # At rest every term has the curvature 2.
         return Derivatives(
             found.value + pulled * pulled, found.slope + 2.0 * pulled, found.curvature

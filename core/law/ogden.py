@@ -22,15 +22,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import principal
 from .barrier import Derivatives
-from .by_component import Array
-from .law import Stressed
-from .principal import Power, power_less_logarithm, summed
+from .principal import Power, PrincipalLaw, powers
 
 
 @dataclass(frozen=True)
-class Ogden:
+class Ogden(PrincipalLaw):
     """The law of one rubber.
 
     Attributes
@@ -40,30 +37,10 @@ class Ogden:
 
     terms: tuple[Power, ...]
 
-    @property
-    def gives_way(self) -> bool:
-        """See :class:`.law.Law`."""
-        return False
-
-    def stressed(
-        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
-    ) -> Stressed:
-        """See :class:`.law.Law`."""
-        return principal.stressed(gradient, self._along, _squared, first_lame, shear_modulus)
-
-    def tangent(
-        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """See :class:`.law.Law`."""
-        return principal.tangent(gradient, self._along, _squared, first_lame, shear_modulus)
-
     def _along(self, excess: NDArray[np.float64]) -> Derivatives:
         """Of stretches 1 + excess (3, d)."""
-        return summed(
-            (term.share, power_less_logarithm(excess, term.exponent)) for term in self.terms
-        )
+        return powers(self.terms, excess)
 
-
-def _squared(excess: NDArray[np.float64]) -> Derivatives:
-    """(J - 1)^2 / 2."""
-    return Derivatives(0.5 * excess * excess, excess, np.ones_like(excess))
+    def _volume(self, excess: NDArray[np.float64]) -> Derivatives:
+        """(J - 1)^2 / 2."""
+        return Derivatives(0.5 * excess * excess, excess, np.ones_like(excess))

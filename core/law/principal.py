@@ -10,7 +10,8 @@ it does to J alone, so that a place at rest is without stress.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,9 +24,6 @@ from .volume import change_of_cofactors, volume_change, volume_tangent
 
 # Two stretches nearer than this, relative, are taken for one where what they differ by divides.
 ALIKE = 1e-7
-
-# A function of stretches, or of volumes, less 1.
-Function = Callable[[NDArray[np.float64]], Derivatives]
 
 
 @dataclass(frozen=True)
@@ -57,33 +55,51 @@ def summed(parts: Iterable[tuple[float, Derivatives]]) -> Derivatives:
     return Derivatives(*(np.sum(column, axis=0) for column in zip(*weighted, strict=True)))
 
 
-def stressed(
-    gradient: Array, along: Function, volume: Function, first_lame: Array, shear_modulus: Array
-) -> Stressed:
-    """Energy and stress of a law with these functions h and g; as :meth:`.law.Law.stressed`."""
-    left, stretches, right = principal(gradient)
-    own, common = along(stretches - 1.0), volume(volume_change(gradient))
-    density = shear_modulus * own.value.sum(axis=0) + first_lame * common.value
-    stress: Array = np.einsum("iad,ad,aJd->iJd", left, shear_modulus * own.slope, right)
-    stress += first_lame * common.slope * cofactors(identity_added(gradient))
-    return Stressed(density, stress)
+def powers(terms: Iterable[Power], excess: NDArray[np.float64]) -> Derivatives:
+    """Ogden's h of stretches 1 + excess: all powers by their shares."""
+    return summed((term.share, power_less_logarithm(excess, term.exponent)) for term in terms)
 
 
-def tangent(
-    gradient: Array, along: Function, volume: Function, first_lame: Array, shear_modulus: Array
-) -> NDArray[np.float64]:
-    """The derivative of that stress; as :meth:`.law.Law.tangent`."""
-    moved = identity_added(gradient)
-    common = volume(volume_change(gradient))
-    found = volume_tangent(moved, first_lame * common.curvature)
-    pressure = first_lame * common.slope
-    found += pressure[:, None, None] * change_of_cofactors(moved)
-    left, stretches, right = principal(gradient)
-    found += (
-        isotropic_tangent(left, stretches, right, along(stretches - 1.0))
-        * (shear_modulus[:, None, None])
-    )
-    return found
+class PrincipalLaw(ABC):
+    """A law by its functions h of a stretch and g of J."""
+
+    @property
+    def gives_way(self) -> bool:
+        """See :class:`.law.Law`."""
+        return False
+
+    @abstractmethod
+    def _along(self, excess: NDArray[np.float64]) -> Derivatives:
+        """The function h, of stretches 1 + excess (3, d)."""
+
+    @abstractmethod
+    def _volume(self, excess: NDArray[np.float64]) -> Derivatives:
+        """The function g, of J = 1 + excess (d,)."""
+
+    def stressed(
+        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
+    ) -> Stressed:
+        """See :class:`.law.Law`."""
+        left, stretches, right = principal(gradient)
+        own, common = self._along(stretches - 1.0), self._volume(volume_change(gradient))
+        density = shear_modulus * own.value.sum(axis=0) + first_lame * common.value
+        stress: Array = np.einsum("iad,ad,aJd->iJd", left, shear_modulus * own.slope, right)
+        stress += first_lame * common.slope * cofactors(identity_added(gradient))
+        return Stressed(density, stress)
+
+    def tangent(
+        self, gradient: Array, first_lame: NDArray[np.float64], shear_modulus: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """See :class:`.law.Law`."""
+        moved = identity_added(gradient)
+        common = self._volume(volume_change(gradient))
+        found = volume_tangent(moved, first_lame * common.curvature)
+        pressure = first_lame * common.slope
+        found += pressure[:, None, None] * change_of_cofactors(moved)
+        left, stretches, right = principal(gradient)
+        along = self._along(stretches - 1.0)
+        found += isotropic_tangent(left, stretches, right, along) * (shear_modulus[:, None, None])
+        return found
 
 
 def principal(gradient: Array) -> tuple[Array, NDArray[np.float64], Array]:
