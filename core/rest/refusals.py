@@ -9,19 +9,32 @@ from ..contact.tool.pose import Pose
 from ..errors import PalpateError
 
 
+class RestlessError(PalpateError):
+    """The body goes on moving, or its forces are no numbers."""
+
+
+class SwallowedError(PalpateError):
+    """A tool or support is wholly within the body, which does not feel it."""
+
+
 @contextmanager
 def rest_errors(*kinds: type[Exception]) -> Iterator[None]:
     """Errors of these kinds from the native engine become one that a user can read.
 
     Raises
     ------
+    RestlessError
+        In place of a RuntimeError, with its text: the engine finds no rest.
     PalpateError
-        In place of an error of one of the kinds, with its text.
+        In place of an error of another of the kinds, with its text.
     """
     try:
         yield
     except kinds as problem:
-        raise PalpateError("rest: {problem}", problem=problem) from problem
+        told = PalpateError("rest: {problem}", problem=problem)
+        if isinstance(problem, RuntimeError):
+            raise RestlessError(told.sentence) from problem
+        raise told from problem
 
 
 def one_goal_each(goals: Sequence[Pose], tools: Sequence[object]) -> None:

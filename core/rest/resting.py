@@ -21,7 +21,7 @@ from ..errors import PalpateError
 from .bearing_points import bearing_points, pressing_points
 from .grip import Grip, native_grip
 from .prop import at, native_prop
-from .refusals import one_goal_each, rest_errors
+from .refusals import SwallowedError, one_goal_each, rest_errors
 from .rest import BodyTouch, Rest
 from .rest_settings import USUAL_REST, RestSettings
 from .support import Floor, Support, friction_checked
@@ -157,8 +157,10 @@ class Resting:
 
         Raises
         ------
-        PalpateError
+        RestlessError
             The body does not come to rest: it falls, slides or rolls without end.
+        SwallowedError
+            A tool or a support is wholly within it.
         """
         with rest_errors(RuntimeError):
             self._native.settle()
@@ -169,7 +171,7 @@ class Resting:
 
         Raises
         ------
-        PalpateError
+        RestlessError, SwallowedError
             As of :meth:`settle`.
         """
         with rest_errors(RuntimeError):
@@ -183,11 +185,11 @@ class Resting:
             if told["free"]:
                 continue
             if number < len(self._tools):
-                raise PalpateError(
+                raise SwallowedError(
                     "tool {number} is within the body, which does not feel it; begin outside",
                     number=number,
                 )
-            raise PalpateError(
+            raise SwallowedError(
                 "support {number} is within the body, which does not feel it; lay the body down "
                 "clear of it",
                 number=number - len(self._tools),

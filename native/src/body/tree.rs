@@ -124,14 +124,43 @@ impl Tree {
             .max_element();
     }
 
-    /// Visits triangles whose boxes are within a reach of `p`, which each visit may lessen.
-    pub(crate) fn visit_within(&self, p: DVec3, reach: f64, mut visit: impl FnMut(u32) -> f64) {
+    /// What each box has of its triangles, by what one of these has and how that of two is joined.
+    pub(crate) fn gather<T: Copy>(
+        &self,
+        gathered: &mut Vec<T>,
+        empty: T,
+        of: impl Fn(u32) -> T,
+        join: impl Fn(T, T) -> T,
+    ) {
+        gathered.clear();
+        gathered.resize(self.nodes.len(), empty);
+        // Children stand behind their parents.
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let first = node.index as usize;
+            gathered[index] = if node.count > 0 {
+                let own = &self.order[first..first + node.count as usize];
+                own.iter().map(|&t| of(t)).fold(empty, &join)
+            } else {
+                join(gathered[index + 1], gathered[first])
+            };
+        }
+    }
+
+    /// Visits triangles in boxes that are wanted, by number, and within a reach of `p`, which each
+    /// visit may lessen.
+    pub(crate) fn visit_within(
+        &self,
+        p: DVec3,
+        reach: f64,
+        is_wanted: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(u32) -> f64,
+    ) {
         let (mut reach, mut stack, mut depth) = (reach, [0_u32; STACK], 1);
         while depth > 0 {
             depth -= 1;
             let index = stack[depth];
             let node = &self.nodes[index as usize];
-            if node.distance_squared(p) > reach * reach {
+            if !is_wanted(index as usize) || node.distance_squared(p) > reach * reach {
                 continue;
             }
             if node.count == 0 {

@@ -46,6 +46,18 @@ pub struct Moved {
     faces: Vec<Face>,
     tree: Tree,
     normals: Vec<DVec3>,
+    /// Around the normals of the triangles in each box of the tree: most boxes hold none that faces
+    /// a node.
+    facings: Vec<Cube>,
+}
+
+/// Least and largest coordinates.
+type Cube = [DVec3; 2];
+const EMPTY: Cube = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+
+/// Least product of a vector with what is in a cube.
+fn least_along(v: DVec3, [low, high]: Cube) -> f64 {
+    (v * low).min(v * high).element_sum()
 }
 
 impl Moved {
@@ -55,6 +67,7 @@ impl Moved {
             faces: body.faces().to_vec(),
             tree: body.tree().clone(),
             normals: vec![DVec3::ZERO; body.nodes.len()],
+            facings: Vec::new(),
             body,
         }
     }
@@ -91,12 +104,19 @@ impl Moved {
             *normal = normal.normalize_or_zero();
         }
         self.tree.refit(&self.faces);
+        self.tree.gather(
+            &mut self.facings,
+            EMPTY,
+            |triangle| [self.faces[triangle as usize].normal; 2],
+            |[low, high], [lower, higher]| [low.min(lower), high.max(higher)],
+        );
     }
 
     fn fold(&self, node: u32, place: DVec3, deepest: f64) -> Option<Fold> {
         let normal = self.normals[node as usize];
         let (mut best, mut reach) = (None, deepest);
-        self.tree.visit_within(place, reach, |triangle| {
+        let faces_it = |part: usize| least_along(normal, self.facings[part]) <= FACING;
+        self.tree.visit_within(place, reach, faces_it, |triangle| {
             let face = &self.faces[triangle as usize];
             if face.normal.dot(normal) > FACING || face.normal.dot(place - face.corners[0]) >= 0.0 {
                 return reach;

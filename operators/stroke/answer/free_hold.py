@@ -14,12 +14,16 @@ from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.grip import MOST_GRIPS
 from ....core.rest.grip import Grip as Hold
+from ....core.rest.refusals import RestlessError, SwallowedError
 from ...lying.coming_down import Alone
 from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
 from .motion import Asked, Motion
 
 Array = NDArray[np.float64]
+
+SWINGS = "The object does not come to rest so; let it go nearer to what bears it"
+SWALLOWS = "What bears the object is within it here; carry it round that, or let it go above"
 
 # Share of a grip's radius at which it takes hold around its place.
 AROUND = 0.7
@@ -47,7 +51,6 @@ class FreeHold:
     turn: Array
     free: Alone
     springs_back = True
-    refused = "The object does not come to rest so; let it go nearer to what bears it"
 
     @classmethod
     def begin(
@@ -85,6 +88,15 @@ class FreeHold:
         ]
         self.free.lead([Pose.at(goal) for goal in np.concatenate(goals)])
         return asked
+
+    def refusal(self, problem: PalpateError) -> PalpateError:
+        """What is said where the body does not come to rest in the hand."""
+        match problem:
+            case SwallowedError():
+                return PalpateError(SWALLOWS)
+            case RestlessError():
+                return PalpateError(SWINGS)
+        return problem
 
     def parts(self, asked: Asked) -> int:
         """In how many parts it is carried, at most so far in each as it may go to come to rest."""

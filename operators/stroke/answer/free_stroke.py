@@ -148,7 +148,7 @@ class FreeStroke:
                 gone = done.amount
                 done, lying = self._led(hand, asked), hand.free.settle()
         except PalpateError as problem:
-            raise PalpateError(hand.refused) from problem
+            raise hand.refusal(problem) from problem
         return done, _stroked(hand, lying)
 
     def towards(self, asked: Asked) -> tuple[Asked, Stroked]:

@@ -243,3 +243,19 @@ def test_a_stroke_that_is_given_up_gives_all_back(free_cube):
     begun.give_back(free_cube)
     bpy.context.view_layer.update()
     assert state(free_cube) == before
+
+
+@pytest.mark.parametrize("hand", ["free_push.FreePush", "free_hold.FreeHold"])
+def test_a_hand_that_finds_no_rest_says_which_it_is(palpate, hand):
+    """What swallows a fingertip is another thing than what rolls away from it; all else is told as
+    it was found.
+    """
+    room, name = hand.split(".")
+    refusals, found = part("core.rest.refusals"), part("core.errors").PalpateError("found")
+    refusal = getattr(part(f"operators.stroke.answer.{room}"), name).refusal
+    told = [
+        refusal(None, problem)
+        for problem in (refusals.RestlessError("a"), refusals.SwallowedError("b"), found)
+    ]
+    assert told[2] is found
+    assert len({"a", "b", *map(str, told)}) == 5

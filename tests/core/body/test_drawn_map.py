@@ -87,12 +87,21 @@ def test_many_vertices_move_as_the_same_few_do(mouse, rng):
     np.testing.assert_array_equal(many, np.tile(few, (1000, 1)))
 
 
-def test_a_place_in_a_cubic_patch_is_its_bernstein_sum(rng):
-    """Against the algorithm of de Casteljau."""
-    controls = rng.normal(size=(10, 3))
+def test_places_in_cubic_patches_are_bernstein_sums(rng):
+    """Against the algorithm of de Casteljau, in whatever order places come."""
+    controls = rng.normal(size=(3, 10, 3))
+    patches = rng.integers(3, size=41)
+    alphas = rng.dirichlet([1, 1, 1], size=41)
+    found = np.empty((41, 3), dtype=np.float32)
+    CubicPlaces(patches, alphas, 3).write(controls, found)
+    for patch, alpha, place in zip(patches, alphas, found, strict=True):
+        np.testing.assert_allclose(place, bernstein_sum(controls[patch], alpha), atol=1e-6)
+
+
+def bernstein_sum(controls, alpha):
+    """Vector of a cubic patch at area coordinates."""
     powers = [(3, 0, 0), (0, 3, 0), (0, 0, 3), (2, 1, 0), (2, 0, 1)]
     powers += [(1, 2, 0), (0, 2, 1), (1, 0, 2), (0, 1, 2), (1, 1, 1)]
-    alpha = rng.dirichlet([1, 1, 1])
     level = dict(zip(powers, controls, strict=True))
     for degree in (2, 1, 0):
         at = [(i, j, degree - i - j) for i in range(degree + 1) for j in range(degree - i + 1)]
@@ -102,9 +111,7 @@ def test_a_place_in_a_cubic_patch_is_its_bernstein_sum(rng):
             + alpha[2] * level[i, j, k + 1]
             for i, j, k in at
         }
-    found = np.empty((1, 3), dtype=np.float32)
-    CubicPlaces([0], alpha[None], 1).write(controls[None], found)
-    np.testing.assert_allclose(found[0], level[0, 0, 0], atol=1e-6)
+    return level[0, 0, 0]
 
 
 def test_a_place_in_a_patch_that_is_not_there_is_refused():

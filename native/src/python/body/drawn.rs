@@ -28,11 +28,14 @@ impl CubicPlaces {
             return Err(misshaped("alpha", alpha.shape(), wanted));
         }
         // What does not fit is as wrong as what is too large.
-        let numbers = patch
+        let numbers: Vec<u32> = patch
             .iter()
-            .map(|&one| u32::try_from(one).unwrap_or(u32::MAX));
-        let alphas = alpha.rows().into_iter().map(|r| [r[0] as f32, r[1] as f32]);
-        drawn::CubicPlaces::new(numbers.collect(), alphas.collect(), patches)
+            .map(|&one| u32::try_from(one).unwrap_or(u32::MAX))
+            .collect();
+        let alphas: Vec<[f32; 2]> = (alpha.rows().into_iter())
+            .map(|r| [r[0] as f32, r[1] as f32])
+            .collect();
+        drawn::CubicPlaces::new(&numbers, &alphas, patches)
             .map(|inner| Self { inner, patches })
             .ok_or_else(|| {
                 PyValueError::new_err(format!(
