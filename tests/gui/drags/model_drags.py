@@ -62,7 +62,9 @@ def _note_drags(stage: Stage, scale: float, drags: list[Drag]) -> None:
 
 
 def _only_model(stage: Stage, path: Path) -> Wait:
-    """Open or import a model as a user would, and choose its largest mesh."""
+    """Open or import a model as a user would, and choose its largest mesh, a soft one if there is
+    one: sample scenes stand on a larger table.
+    """
     for other in list(bpy.data.objects):
         bpy.data.objects.remove(other)
     if path.suffix == ".blend":
@@ -76,6 +78,7 @@ def _only_model(stage: Stage, path: Path) -> Wait:
         thing for thing in bpy.context.scene.objects if thing.type == "MESH" and thing.visible_get()
     ]
     assert meshes, f"{path.name} has no mesh"
+    meshes = [thing for thing in meshes if thing.palpate.body_key] or meshes
     largest = max(meshes, key=lambda thing: np.prod(np.maximum(thing.dimensions, 1e-6)))
     for other in bpy.context.scene.objects:
         other.select_set(other == largest)
