@@ -31,7 +31,7 @@ BPY_VENV := .venv-bpy-$(BPY)
 # Without make's flags: its own jobs are not make's.
 CARGO := env -u MAKEFLAGS -u MFLAGS cargo
 CRATE := --locked --manifest-path native/Cargo.toml
-NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/build.rs) \
+NATIVE_SOURCES := $(wildcard native/*.toml native/*.lock native/*.pyi native/build.rs native/openmp/*.c) \
   $(shell find native/src -name '*.rs' 2>/dev/null)
 EXTENSION_SOURCES := __init__.py LICENSE blender_manifest.toml \
   $(shell find addon operators core simulated cli -type f -not -path '*/__pycache__/*' 2>/dev/null) \

@@ -14,6 +14,7 @@ from typing import Any
 
 import lief
 from platforms import Platform
+from servo_wheel import openmp
 from servo_wheel.code_signature import signature_fault
 from servo_wheel.mach_o import is_of_the_system
 from servo_wheel.pe import SYSTEM
@@ -22,9 +23,8 @@ from servo_wheel.pe import SYSTEM
 # the C++ runtime (msvcp140): that of Blender 4.5 and 5.0 is of 2021, too old for newer compilers.
 BLENDERS = frozenset({"python3", "python311", "python313", "vcruntime140", "vcruntime140_1"})
 
-# Microsoft's OpenMP comes with its redistributable alone, which most computers have from some other
-# program; where it is missing, hollow colliders are refused with the remedy (convex_parts.py).
-MAY_BE_MISSING = {"coacd/lib_coacd.dll": frozenset({"vcomp140"})}
+# What is loaded before, from the servo's wheel (decomposition_child.py).
+LOADED_BEFORE = {"coacd/lib_coacd.dll": frozenset({Path(openmp.NAME).stem})}
 
 # What Linux with glibc 2.28 has, as Debian 10 and Red Hat 8: newest versions of the symbols of its
 # C library and of gcc 8's for C++, and the libraries that wheels may ask of it (PEP 600).
@@ -67,7 +67,7 @@ def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
     names = frozenset(Path(name).name.lower() for name in images)
     for name, image in images.items():
         if name.endswith((".pyd", ".dll")):
-            found = _of_windows(image, names, MAY_BE_MISSING.get(name, frozenset()))
+            found = _of_windows(image, names, LOADED_BEFORE.get(name, frozenset()))
         elif name.endswith((".so", ".dylib")) and platform.name.startswith("macos"):
             found = _of_macos(image, names)
         elif re.search(r"\.so(\.\d+)*$", name) and platform.name.startswith("linux"):
@@ -81,12 +81,12 @@ def _is_long(name: str) -> bool:
     return len(UNPACKED) + len(name) > LONGEST_PATH
 
 
-def _of_windows(image: bytes, beside: frozenset[str], missing: frozenset[str]) -> Iterator[str]:
+def _of_windows(image: bytes, beside: frozenset[str], before: frozenset[str]) -> Iterator[str]:
     library: Any = lief.PE.parse(image)
     asked = {entry.name.lower() for entry in (*library.imports, *library.delay_imports)}
     for name in sorted(asked - beside):
         stem = name.removesuffix(".dll")
-        if stem not in BLENDERS | missing and not SYSTEM.fullmatch(stem):
+        if stem not in BLENDERS | before and not SYSTEM.fullmatch(stem):
             yield f"asks for {name}, which neither Windows nor Blender has"
 
 

@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from servo_wheel import elf, mach_o, pe
+from servo_wheel import elf, mach_o, openmp, pe
 from servo_wheel.target import Target
 
 HOME = str(Path.home()).encode()
@@ -18,9 +18,13 @@ HOME = str(Path.home()).encode()
 def faults(wheel: Path, target: Target) -> list[str]:
     """Return one sentence for each fault of a compiled wheel; none for a sound one."""
     image = native_image(wheel)
-    return [*_of_name(wheel, target), *_of_abi(wheel), *of_image(image, target)] + (
-        elf.faults_of_wheel(wheel, target) if target.is_linux else []
-    )
+    found = [*_of_name(wheel, target), *_of_abi(wheel), *of_image(image, target)]
+    if target.is_linux:
+        found += elf.faults_of_wheel(wheel, target)
+    if openmp.is_wanted(target):
+        with zipfile.ZipFile(wheel) as archive:
+            found += openmp.faults(archive.read(openmp.NAME))
+    return found
 
 
 def native_image(wheel: Path) -> bytes:

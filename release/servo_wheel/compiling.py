@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from bundled_wheels import PackagingError
-from servo_wheel import apple_stubs, standard_library
+from servo_wheel import apple_stubs, openmp, standard_library
 from servo_wheel.settled_uuid import settle_wheel
 from servo_wheel.target import MACOS_DEPLOYMENT_TARGET, Target
 
@@ -55,6 +55,8 @@ def compile_wheel(
     (wheel,) = output.glob(f"palpate_servo-*-{target.tag}.whl")
     if target.is_macos:
         settle_wheel(wheel)
+    if openmp.is_wanted(target):
+        openmp.add_to(wheel, repository)
     return wheel
 
 

@@ -6,7 +6,6 @@ two checkouts give two numbers, and two signatures. Here the number follows from
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import re
 import struct
@@ -14,6 +13,7 @@ import zipfile
 from pathlib import Path
 
 from servo_wheel.code_signature import commands, signature_place, signed_anew
+from servo_wheel.wheel_file import rewrite
 
 LC_SEGMENT_64, LC_UUID = 0x19, 0x1B
 MACH_O = re.compile(b"\xcf\xfa\xed\xfe[\x07\x0c]\x00\x00\x01.{4}[\x02\x06]\x00\x00\x00", re.DOTALL)
@@ -23,18 +23,13 @@ UUID_BYTES = 16
 def settle_wheel(wheel: Path) -> None:
     """Settle the images in a wheel, and what its record says of them."""
     with zipfile.ZipFile(wheel) as archive:
-        members = [(info, archive.read(info)) for info in archive.infolist()]
+        members = {name: archive.read(name) for name in archive.namelist()}
     changed = {
-        info.filename: settled(content)
-        for info, content in members
+        name: settled(content)
+        for name, content in members.items()
         if MACH_O.match(content) is not None
     }
-    with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
-        for info, content in members:
-            now = changed.get(info.filename, content)
-            if info.filename.endswith(".dist-info/RECORD"):
-                now = _record(content.decode(), changed).encode()
-            archive.writestr(info, now)
+    rewrite(wheel, changed)
 
 
 def settled(image: bytes) -> bytes:
@@ -69,14 +64,3 @@ def _end(image: bytes) -> int:
             offset, length = struct.unpack_from("<2Q", image, at + 40)
             ends.append(offset + length)
     return max(ends)
-
-
-def _record(lines: str, changed: dict[str, bytes]) -> str:
-    """A wheel's record with the digests and lengths of what has changed."""
-    rows = [line.split(",") for line in lines.splitlines()]
-    for row in rows:
-        if row[0] in changed:
-            content = changed[row[0]]
-            digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode()
-            row[1:] = [f"sha256={digest.rstrip('=')}", str(len(content))]
-    return "\n".join(",".join(row) for row in rows) + "\n"

@@ -14,9 +14,10 @@ mkdir -p "$root$PWD"
 # A folder that was deleted and made anew has left a mount of the one that was.
 [ "$root$PWD" -ef "$PWD" ] || ! mounted "$root$PWD" || umount --lazy "$root$PWD"
 mounted "$root$PWD" || mount --bind "$PWD" "$root$PWD"
-microsofts=ucrtbase,vcruntime140,vcruntime140_1,msvcp140,msvcp140_1,msvcp140_2,concrt140,vcomp140
+# Of OpenMP no Windows has one by itself, so wine's is not taken either.
+microsofts=ucrtbase,vcruntime140,vcruntime140_1,msvcp140,msvcp140_1,msvcp140_2,concrt140
 exec chroot "$root" env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
     XDG_RUNTIME_DIR=/tmp WINEPREFIX=/windows/prefix WINEARCH=win64 WINEDEBUG=-all \
-    "WINEDLLOVERRIDES=mscoree=;mshtml=;$microsofts=n,b" \
+    "WINEDLLOVERRIDES=mscoree=;mshtml=;vcomp140=n;$microsofts=n,b" \
     OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 ${PALPATE_PACKAGE:+PALPATE_PACKAGE="$PALPATE_PACKAGE"} \
     bash -c 'cd "$1"; shift; exec "$@"' enter "$PWD" "$@"

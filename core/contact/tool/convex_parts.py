@@ -149,9 +149,8 @@ def _answer(request: bytes, name: str, python: tuple[str, ...]) -> bytes:
             child.kill()
     if child.returncode == NOT_LOADED:
         raise PalpateError(
-            "colliders: {name} is hollow, and CoACD, which takes such apart, cannot be loaded; on "
-            "Windows install Microsoft's Visual C++ Redistributable for x64, which brings its "
-            "vcomp140.dll, or put convex parts of it into the collection",
+            "colliders: {name} is hollow, and CoACD, which takes such apart, cannot be loaded; "
+            "reinstall Palpate, or put convex parts of it into the collection",
             name=name,
         )
     if child.returncode or not answer:

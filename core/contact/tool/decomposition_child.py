@@ -4,17 +4,20 @@ Standard input: a line of JSON, then vertices (v, 3) and triangles (f, 3) as npy
 how many corners each part has, and all corners (k, 3), as npy.
 """
 
+import ctypes
 import faulthandler
+import importlib.util
 import io
 import json
 import os
 import sys
+from pathlib import Path
 
 # Of a shape in a box of side 1, by which a part may still be hollow, and how long better cuts are
 # searched for: half of the library's own take half of its time, for a bowl as well filled.
 CONCAVITY, NODES, ITERATIONS, SAMPLES = 0.03, 10, 60, 1000
 SEED = 0
-# How this ends where the system lacks what CoACD's library asks for.
+# How this ends where CoACD's library cannot be loaded.
 NOT_LOADED = 3
 
 
@@ -31,6 +34,7 @@ def main() -> int:
     import numpy as np
 
     try:
+        _load_openmp()
         import coacd
     except OSError as problem:
         sys.stderr.write(f"{problem}\n")
@@ -53,3 +57,13 @@ def main() -> int:
     with output:
         output.write(answer.getvalue())
     return 0
+
+
+def _load_openmp() -> None:
+    """On Windows: load the servo's, so that CoACD's library need not find Microsoft's."""
+    if sys.platform == "win32":
+        servo = importlib.util.find_spec("palpate_servo")
+        # Whoever compiles the servo on Windows itself has none, and needs Microsoft's.
+        library = Path(servo.origin if servo and servo.origin else ".").with_name("vcomp140.dll")
+        if library.exists():
+            ctypes.WinDLL(str(library))
