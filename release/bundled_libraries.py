@@ -50,16 +50,29 @@ def faults(package: Path, platform: Platform) -> list[str]:
     own = "wheels/palpate_servo-" if platform.name.startswith("linux") else "-"
     with zipfile.ZipFile(package) as archive:
         names = archive.namelist()
-        wheels = [one for one in names if one.endswith(".whl") and not one.startswith(own)]
-        return [
-            f"{Path(name).name}: {fault}"
-            for name in wheels
-            for fault in of_wheel(archive.read(name), platform)
-        ]
+        wheels = {
+            Path(one).name: archive.read(one)
+            for one in names
+            if one.endswith(".whl") and not one.startswith(own)
+        }
+    servo = [one for name, one in wheels.items() if name.startswith("palpate_servo-")]
+    ours = frozenset(Path(name).stem for one in servo for name in _names(one))
+    return [
+        f"{name}: {fault}"
+        for name, content in wheels.items()
+        for fault in of_wheel(content, platform, ours)
+    ]
 
 
-def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
-    """Yield what is wrong with the libraries of one wheel."""
+def _names(wheel: bytes) -> list[str]:
+    with zipfile.ZipFile(io.BytesIO(wheel)) as archive:
+        return archive.namelist()
+
+
+def of_wheel(
+    content: bytes, platform: Platform, ours: frozenset[str] = frozenset()
+) -> Iterator[str]:
+    """Yield what is wrong with the libraries of one wheel; ``ours`` lie in the servo's wheel."""
     with zipfile.ZipFile(io.BytesIO(content)) as wheel:
         images = {name: wheel.read(name) for name in wheel.namelist()}
     if platform.name.startswith("windows"):
@@ -67,7 +80,7 @@ def of_wheel(content: bytes, platform: Platform) -> Iterator[str]:
     names = frozenset(Path(name).name.lower() for name in images)
     for name, image in images.items():
         if name.endswith((".pyd", ".dll")):
-            found = _of_windows(image, names, LOADED_BEFORE.get(name, frozenset()))
+            found = _of_windows(image, names, ours & LOADED_BEFORE.get(name, frozenset()))
         elif name.endswith((".so", ".dylib")) and platform.name.startswith("macos"):
             found = _of_macos(image, names)
         elif re.search(r"\.so(\.\d+)*$", name) and platform.name.startswith("linux"):

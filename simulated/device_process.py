@@ -112,13 +112,13 @@ class _Commands:
 
     def __init__(self) -> None:
         self._come = Lines(0)
-        self._parent = os.getppid()
+        self._parent = _parent()
 
     def obey(self, board: Board, clock: Clock) -> bool:
         """Execute pending commands; False when standard input or the parent has ended."""
         while (line := self._come.next()) is not None:
             self._do(line.decode().split(), board, clock)
-        return not self._come.ended and os.getppid() == self._parent
+        return not self._come.ended and _parent() == self._parent
 
     @staticmethod
     def _do(words: list[str], board: Board, clock: Clock) -> None:
@@ -138,6 +138,14 @@ class _Commands:
                 _print_json({**clock.report(), **board.report()}, True)
             case _:
                 raise PalpateError(f"simulated device: no such command: {' '.join(words)}")
+
+
+def _parent() -> int | None:
+    """Number of the process that adopts this one when its parent dies; on Windows none does.
+
+    To ask there is to look through all processes, at each tick (Python 3.11): milliseconds.
+    """
+    return os.getppid() if os.name == "posix" else None
 
 
 def _say_where(board: Board, options: SimulatedOptions, json_lines: bool) -> None:

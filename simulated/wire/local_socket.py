@@ -12,6 +12,8 @@ BUFFER_BYTES = 4096
 """What the system holds of each direction, about: a host that stops reading is noticed."""
 MOST_READS = 64
 """Of a period: a host that never ends is heard again in the next one."""
+KNOCKS_EVERY = 16
+"""Periods with a host after which it is looked whether another one has come."""
 
 
 class LocalSocket(DevicePort):
@@ -27,6 +29,7 @@ class LocalSocket(DevicePort):
         self._address = address_of(path)
         self._listening: socket.socket | None = None
         self._host: socket.socket | None = None
+        self._alone = 0
         self.plug_in()
 
     @property
@@ -66,8 +69,10 @@ class LocalSocket(DevicePort):
 
     def read(self, _now: float, /) -> bytes:
         """Bytes from the host; none while unplugged."""
+        # To ask the system is most of what a period takes.
+        self._alone = (self._alone + 1) % KNOCKS_EVERY if self._host else 0
         # Who has come first: one that comes as the last host goes finds that one gone.
-        coming = self._coming()
+        coming = [] if self._alone else self._coming()
         heard = self._take()
         for host in coming:
             if self._host is None:
@@ -93,6 +98,8 @@ class LocalSocket(DevicePort):
             if not part:
                 self._hang_up()
             heard += part
+            if len(part) < BUFFER_BYTES:
+                break
         return bytes(heard)
 
     def _coming(self) -> list[socket.socket]:

@@ -14,7 +14,7 @@ from palpate.core.errors import PalpateError
 from palpate.core.machine import run_module
 from palpate.core.servo.port_error import PortError
 from palpate.core.servo.ports import say_hello
-from palpate.simulated import simulated_process
+from palpate.simulated import device_process, simulated_process
 from palpate.simulated.hand.options import SimulatedOptions
 from palpate.simulated.simulated_process import SimulatedDevice
 
@@ -146,3 +146,14 @@ def test_a_device_that_hangs_is_ended_all_the_same(monkeypatch):
         device.report()
     assert device.stop() == {}
     assert not device.running
+
+
+def test_windows_is_not_asked_for_the_parent(monkeypatch):
+    def asked():
+        pytest.fail("a look at all processes")
+
+    monkeypatch.setattr(os, "getppid", asked)
+    with monkeypatch.context() as windows:
+        windows.setattr(os, "name", "nt")
+        parent = device_process._parent()
+    assert parent is None
