@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::choose::MARGIN;
 use super::joint::{AllLed, Beside, Joint, Led};
 use crate::algebra::MOST_POINTS;
-use crate::contact::ground::{Ground, MOST_BODIES};
+use crate::contact::ground::Ground;
 use crate::tool::coefficients::AllPosed;
 use crate::tool::collider::Collider;
 use crate::tool::collider::side::Side;
@@ -39,7 +39,7 @@ impl Joint {
     ) -> (usize, bool) {
         let rubs = posed.iter().flatten().any(|tool| !tool.friction.is_none());
         let most_work = if rubs { MOST_WORK_RUBBING } else { MOST_WORK };
-        self.see(led);
+        self.see(grounds, led);
         for made in 1..=MOST_LINEARISATIONS {
             self.linearise(led, rubs);
             let before = self.effort.multiplications;
@@ -54,7 +54,7 @@ impl Joint {
                 self.patch.displace();
             }
             self.look(led);
-            let error = self.see(led);
+            let error = self.see(grounds, led);
             self.count(solved, rubs, led);
             if error <= CONVERGED && is_held && meets {
                 return (made, true);
@@ -101,14 +101,15 @@ impl Joint {
 
     /// Holds distances and normals as the pushes now ask for; by which share of their tool's reach
     /// displacements are wrong with these at most, about.
-    fn see(&mut self, led: &AllLed<'_>) -> f64 {
+    fn see(&mut self, grounds: &[Ground<'_>], led: &AllLed<'_>) -> f64 {
         let mut error = 0.0_f64;
         for (number, led) in led.iter().enumerate() {
             let Some(led) = led else { continue };
-            for body in 0..MOST_BODIES {
+            for (body, ground) in grounds.iter().enumerate() {
                 if let Some(side) = led.collider.side(body) {
                     let pair = [number as u8, body as u8];
-                    error = error.max(self.see_one(pair, led.collider, side));
+                    let is_held = ground.mobility.is_none();
+                    error = error.max(self.see_one(pair, is_held, led.collider, side));
                 }
             }
         }
@@ -117,7 +118,7 @@ impl Joint {
 
     /// The same for one tool on one body: what its gaps are from zero, and what its forces turned along the new
     /// normals would move.
-    fn see_one(&mut self, pair: [u8; 2], collider: &Collider, side: &Side) -> f64 {
+    fn see_one(&mut self, pair: [u8; 2], is_held: bool, collider: &Collider, side: &Side) -> f64 {
         let tool = collider.tool();
         let Some(pose) = collider.pose() else {
             return 0.0;
@@ -125,7 +126,8 @@ impl Joint {
         let watched = WATCHED * MARGIN * side.surface().spacing();
         let own = |slot: &&Slot| slot.is_of(pair);
         let pushes = self.patch.slots().iter().filter(own);
-        let hold = TiltLimit::of(pushes.map(|slot| (slot.push * slot.normal, slot.at.normal)));
+        let pushes = pushes.map(|slot| (slot.push * slot.normal, slot.at.normal));
+        let hold = TiltLimit::of(pushes, is_held);
         let hold = hold.filter(|_| !tool.is_endless());
         let hold = hold.map(|hold| hold.seen_from(&pose.rotation));
         let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);

@@ -22,6 +22,8 @@ const MOST_TILT: f64 = 50.0 / 180.0 * PI;
 const MORE_WHERE_UNEVEN: f64 = 100.0 / 180.0 * PI;
 /// A push that goes out of the body by more than this cosine has come through a part.
 const OUTWARD: f64 = 0.5;
+/// One that leans so far that it goes into the body by less than this cosine counts by as much less.
+const LEANING: f64 = 0.2;
 
 /// Directions within an angle of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,18 +46,33 @@ impl TiltLimit {
     /// From pushes (along the tool's normals) and the outward normals of the body where they push.
     /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
     /// part would else be felt turned round. Of none, nowhere.
-    pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<Self> {
+    ///
+    /// A body that nobody holds may slide off a tool, edge on edge. Where all pushes together lean
+    /// farther from what they press than the limit, it is as much wider, up to none at all: it comes
+    /// and goes without a jump. One that is held stays under its tool, and so its pushes in the limit.
+    pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>, is_held: bool) -> Option<Self> {
         let (mut facing, mut most, mut is_through) = (DVec3::ZERO, 0.0, false);
+        let mut all = DVec3::ZERO;
         for (push, normal) in pushes {
-            let outward = push.dot(normal);
+            let (outward, length) = (push.dot(normal), push.length());
             let into = (-outward).max(0.0);
             facing += normal * into;
             most += into;
-            is_through |= outward > OUTWARD * push.length();
+            if into > 0.0 {
+                all += push * (into / (LEANING * length)).min(1.0);
+            }
+            is_through |= outward > OUTWARD * length;
         }
         let length = facing.length();
-        (length > 0.0).then(|| {
-            let limit = MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most);
+        let leaning = if is_held || is_through {
+            0.0
+        } else {
+            let into = -all.dot(facing) / (all.length() * length);
+            (1.0 - into / MOST_TILT.cos()).clamp(0.0, 1.0)
+        };
+        let limit =
+            MOST_TILT + MORE_WHERE_UNEVEN * (1.0 - length / most) + (PI - MOST_TILT) * leaning;
+        (length > 0.0 && limit < PI).then(|| {
             let (sine, cosine) = limit.sin_cos();
             Self {
                 common: Cone {
