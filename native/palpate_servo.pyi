@@ -379,6 +379,10 @@ class Snapshot(FingerSnapshot):
         """
 
     @property
+    def others(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """The same of each other body that it presses, in the order of their pile."""
+
+    @property
     def remembered_nodes(self) -> NDArray[np.int64]:
         """Nodes (k,) of the surface that remember a force, where the body gives way with time."""
 
@@ -556,6 +560,10 @@ class Prop:
         is not whole, and numbers that cannot be.
         """
 
+@final
+class PropAmong:
+    """A body that nobody holds, among others that it presses: as a Pile lays it; immutable."""
+
 class PileContacts(TypedDict):
     """Contacts of a pile that press, an entry of each array for one of them."""
 
@@ -619,6 +627,12 @@ class Pile:
 
     def contacts(self) -> PileContacts:
         """All contacts that press."""
+
+    def laid(self) -> PropAmong:
+        """The first body among the others as they lie, for a servo, which goes on from here.
+
+        Raises ValueError for more bodies than a servo takes.
+        """
 
     def lead(self, obstacle: int, position: _Vector, rotation: _Matrix) -> None:
         """Where a rigid tool goes from the next tick on, by a stride in each."""
@@ -934,12 +948,12 @@ class Servo:
         another Body than that of the servo.
         """
 
-    def lay(self, prop: Prop | None) -> None:
+    def lay(self, prop: Prop | PropAmong | None) -> None:
         """Lay the body down as one that nobody holds, also while the servo runs, or have it held
         again (None): zero force in that tick, then a ramp; all that touches it is set down anew.
 
-        Its contact is always consistent. Returns when the thread uses it. ValueError for a prop of
-        another Body than that of the servo.
+        Its contact is always consistent; among others only tools feel it. Returns when the thread
+        uses it. ValueError for a prop of another Body than that of the servo.
         """
 
     def set_body(self, body: Body, settings: ServoSettings) -> None:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...core.body.soft_body import SoftBody
 from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
 from ...core.rest.prop import WORLD
 from ...simulated.hand.options import SimulatedOptions
 
@@ -15,9 +16,10 @@ HAND_FORCE = 1.5
 
 
 def press_from_above(
-    body: SoftBody, young_modulus: float, placement: Pose = WORLD
+    body: SoftBody, young_modulus: float, placement: Pose = WORLD, tool: Tool | None = None
 ) -> SimulatedOptions:
-    """Simulated hand that presses the body, placed there, at its highest place, against the normal.
+    """Simulated hand that presses the body, placed there, at its highest place, against the normal,
+    with a tool or a point.
 
     It goes in by a tenth of the body's height or until it takes `HAND_FORCE`, whichever is less.
     """
@@ -32,6 +34,8 @@ def press_from_above(
     reach = depth * (1.0 + stiffness / hand.hand_stiffness)
     height = 0.2 * float(extents.max())
     at, normal = placement.to_world(at), placement.rotation @ normal
+    if tool is not None:
+        at = at + (tool.radius - float((tool.core @ normal).min())) * normal
     return SimulatedOptions(
         rest=vector(at + height * normal),
         at=vector(at),

@@ -27,7 +27,9 @@ from ...core.shape.shapes import shape
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..rest.floor_options import add_floor
-from ..rest.laid_body import laid_body
+from ..rest.laid_body import LaidBody, laid_body
+from ..rest.laid_scene import LaidScene, laid_scene
+from ..scene.scene_file import is_scene
 from .from_above import highest_place, press_from_above, vector
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
@@ -50,7 +52,7 @@ DESCRIPTION = (
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's options."""
-    add_body(parser)
+    add_body(parser, or_scene=True)
     device = parser.add_mutually_exclusive_group(required=True)
     device.add_argument("--port", metavar="PORT", help="a device that speaks the link")
     device.add_argument(
@@ -109,15 +111,16 @@ def run(arguments: argparse.Namespace) -> int:
         raise PalpateError("--seconds: the time must be more than 0 s and have an end")
     if arguments.record is not None:
         _check_recording(arguments.record, arguments.seconds)
-    body = body_file.load(arguments.body)
-    young_modulus = modulus_of(arguments, body)
     others: list[str] = arguments.second_port
-    laid = laid_body(arguments, body, young_modulus, whole=bool(others))
+    laid = _laid(arguments, 1 + len(others))
+    body, tools = laid.body, laid.tools
+    young_modulus = modulus_of(arguments, body)
     with ExitStack() as stack:
         simulated = None
         port = arguments.haply if arguments.port is None else arguments.port
         if arguments.simulate:
-            hand = press_from_above(body, young_modulus, laid.placement)
+            tool = tools[0] if tools else None
+            hand = press_from_above(body, young_modulus, laid.placement, tool)
             simulated = stack.enter_context(SimulatedDevice(hand))
             port = simulated.port
         _check_ports([port, *others])
@@ -127,6 +130,7 @@ def run(arguments: argparse.Namespace) -> int:
         stack.callback(made.close)
         made.wait_for(np.zeros(0, dtype=np.int64))
         servo = servo_on(laid.native, settings, rate_hz=arguments.rate, prop=laid.prop)
+        laid.equip(servo)
         firming = Firming(servo, body)
         stack.callback(firming.close)
         stack.callback(servo.stop)
@@ -155,6 +159,13 @@ def run(arguments: argparse.Namespace) -> int:
             # The report survives a file that cannot be written.
             print(json.dumps(report) if arguments.json else for_people(report))
     return 0
+
+
+def _laid(arguments: argparse.Namespace, fingers: int) -> LaidBody | LaidScene:
+    if is_scene(arguments.body):
+        return laid_scene(arguments, fingers)
+    body = body_file.load(arguments.body)
+    return laid_body(arguments, body, modulus_of(arguments, body), whole=fingers > 1)
 
 
 def _check_recording(path: Path, seconds: float) -> None:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from ...core.body.native_body import native_body
 from ...core.body.soft_body import SoftBody
 from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
 from ...core.rest.prop import WORLD, native_prop
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
-from ...core.servo.session import Body, Prop
+from ...core.servo.session import Body, Prop, Servo
 from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 
 
@@ -19,12 +20,17 @@ from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 class LaidBody:
     """A body for the servo: native, where its frame is in the world, and as one that nobody holds.
 
-    A pinned one has no prop, and its frame is that of the world.
+    A pinned one has no prop, and its frame is that of the world. Fingers are points.
     """
 
+    body: SoftBody
     native: Body
     placement: Pose
     prop: Prop | None
+    tools: tuple[Tool, ...] = ()
+
+    def equip(self, servo: Servo) -> None:
+        """Give each finger its tool: none has any."""
 
 
 def laid_body(
@@ -39,9 +45,10 @@ def laid_body(
     """
     if not body.is_free:
         refuse_floor_of_pinned(arguments)
-        return LaidBody(native_body(body, whole=whole), WORLD, None)
+        return LaidBody(body, native_body(body, whole=whole), WORLD, None)
     floor = floor_under(arguments, body)
     settings = RestSettings(young_modulus, gravity=gravity(arguments))
     placement = Resting(body, [floor], settings=settings).settle().placement
     native = native_body(body, whole=True, may_move=True)
-    return LaidBody(native, placement, native_prop(body, native, [floor], placement, settings))
+    prop = native_prop(body, native, [floor], placement, settings)
+    return LaidBody(body, native, placement, prop)

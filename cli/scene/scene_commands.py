@@ -20,13 +20,15 @@ from ..body.tool_option import tool_from
 from .scene_figures import Told, for_people, scene_figures, write_surfaces
 from .scene_file import Led, Scene, read_scene
 
+# Of the servo; no other is for bodies without pins.
+USUAL_MODE = "consistent"
 # Told by the scene, or about one body alone.
 ONE_BODY = ("floor", "floor_friction", "gravity", "young", "friction", "mode")
 
 
 def settle_scene(arguments: argparse.Namespace) -> int:
     """Read, let all come to rest, print."""
-    _refuse_options(arguments)
+    refuse_options(arguments)
     scene = read_scene(arguments.body)
     rests = scene.pile().settle()
     if arguments.surface is not None:
@@ -37,7 +39,7 @@ def settle_scene(arguments: argparse.Namespace) -> int:
 
 def press_scene(arguments: argparse.Namespace) -> int:
     """Read, let all come to rest, move the scene's tools and those that are set down, print."""
-    _refuse_options(arguments)
+    refuse_options(arguments)
     if arguments.shape not in (None, "linear"):
         raise PalpateError("--shape: bodies of a scene have the linear one; leave it out")
     scene = read_scene(arguments.body)
@@ -98,9 +100,16 @@ def _gap(found: tuple[Rest, NDArray[np.float64], Place]) -> float:
     return float(np.linalg.norm(place.position - at))
 
 
-def _refuse_options(arguments: argparse.Namespace) -> None:
+def refuse_options(arguments: argparse.Namespace) -> None:
+    """Nothing may be asked for that a scene tells itself.
+
+    Raises
+    ------
+    PalpateError
+        An option about one body.
+    """
     for option in ONE_BODY:
-        if getattr(arguments, option, None) is not None:
+        if getattr(arguments, option, None) not in (None, USUAL_MODE):
             raise PalpateError(
                 f"--{option.replace('_', '-')}: it is about one body; a scene file tells this "
                 "itself, so leave the option out"

@@ -54,6 +54,10 @@ class Scene:
     ways: tuple[tuple[float, float, float], ...]
     settings: PileSettings
 
+    def untouched(self) -> Pile:
+        """The bodies as the file places them, without its tools."""
+        return Pile(self.bodies, self.supports, settings=self.settings)
+
     def pile(self, placements: Sequence[Pose] | None = None, more: Sequence[Led] = ()) -> Pile:
         """The bodies as the file places them, or elsewhere; pressed by more tools than its own."""
         places = [place for _, place in self.bodies] if placements is None else placements

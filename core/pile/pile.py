@@ -27,7 +27,7 @@ from .pile_settings import USUAL_PILE, PileSettings
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
-    from palpate_servo import RigidTool
+    from palpate_servo import Body, PropAmong, RigidTool, ToolSurface
 
 MOST_BODIES = 16
 # Ticks so short, in seconds, that nothing moves as a whole; at most so many until the sum of all
@@ -83,17 +83,20 @@ class Pile:
         friction_checked(by_tools)
         self.bodies = tuple(body for body, _ in bodies)
         self._points: list[ContactPoints] = []
-        natives, laid = {}, []
+        natives: dict[int, tuple[Body, ToolSurface]] = {}
+        laid = []
         for body, placement in bodies:
             points, near = bearing_points(body, settings.spacing)
             if id(body) not in natives:
                 native = native_body(body, whole=True, may_move=True)
-                natives[id(body)] = native_surface(native, points, near)
+                natives[id(body)] = native, native_surface(native, points, near)
             self._points.append(points)
             free = None
             if body.is_free:
                 free = body.mass, body.inertia.centre, body.moments, settings.drag_time
-            laid.append((natives[id(body)], body.modulus(None), free, *at(placement)))
+            _, surface = natives[id(body)]
+            laid.append((surface, body.modulus(None), free, *at(placement)))
+        self.native_body, _ = natives[id(self.bodies[0])]
         rigid = [
             *((native_shape(tool), *at(pose), by_tools) for tool, pose in tools),
             *(_rigid(support, self._size()) for support in supports),
@@ -105,6 +108,25 @@ class Pile:
             self._native = NativePile(
                 laid, rigid, gravity=settings.gravity, friction=settings.friction
             )
+
+    def laid(self) -> PropAmong:
+        """The first body among the others as they lie, for a servo on its ``native_body``, which
+        goes on from here: its fingers' tools press all of them.
+
+        Raises
+        ------
+        PalpateError
+            The first body is pinned, tools of the pile's own, more bodies than a servo takes.
+        """
+        if not self.bodies[0].is_free:
+            raise PalpateError("the body to be touched is pinned; name one first that is free")
+        if self._led:
+            raise PalpateError(
+                "{tools} tools press the pile; a servo's fingers lead them, so make it without",
+                tools=len(self._led),
+            )
+        with rest_errors(ValueError):
+            return self._native.laid()
 
     def _size(self) -> float:
         return max(float(body.mesh.nodes.max() - body.mesh.nodes.min()) for body in self.bodies)

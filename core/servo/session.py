@@ -14,6 +14,7 @@ from palpate_servo import (
     LinkDevice,
     Pointer,
     Prop,
+    PropAmong,
     Servo,
     Snapshot,
     device_coupling,
@@ -43,6 +44,7 @@ __all__ = [
     "LinkDevice",
     "Pointer",
     "Prop",
+    "PropAmong",
     "Servo",
     "Snapshot",
     "device_coupling",
@@ -64,7 +66,7 @@ def servo_on(
     rate_hz: int = 1000,
     max_force: float = 3.0,
     record_seconds: float = 10.0,
-    prop: Prop | None = None,
+    prop: Prop | PropAmong | None = None,
 ) -> Servo:
     """Servo for a native body, ready to be started with a pointer or a serial device.
 
@@ -87,7 +89,8 @@ def servo_on(
     max_force : newton; the clamp on the force of any device, unless ``settings`` have one.
     record_seconds : length of samples kept until they are read, 0 to 60; their memory is taken at
         the start. ``Servo.start_recording`` keeps more.
-    prop : the same body laid down as one that nobody holds (:func:`native_prop`); places and forces
+    prop : the same body laid down as one that nobody holds (:func:`native_prop`), or among others
+        that it presses (``Pile.laid``), where only tools feel it; places and forces
         are then those in the world, in which ``Snapshot.placement`` tells where the body is, and
         its contact is always consistent.
 

@@ -100,6 +100,9 @@ REASONS = {
     "its tool was made for another body: set it again": (
         "The body was exchanged under the tool; leave with Escape and press again"
     ),
+    "the body lies among others, which only tools press: set a tool": (
+        "Objects that press each other are pressed by tools alone; choose one instead of a point"
+    ),
     "inside the body": "The probe is inside the body: lead it out, then touch from outside",
     "not started": "The force loop has not started yet",
     "asked to stop": "Pressing has ended",

@@ -21,6 +21,8 @@ pub const NO_ANGLES: &str = "no angles yet";
 pub const STRETCHED: &str = "the arms are stretched: bring the handle back to the middle";
 /// Waiting: a tool is made for one body, and there is another now.
 pub const OTHER_BODY: &str = "its tool was made for another body: set it again";
+/// Waiting: among others that the body presses, a point is not felt.
+pub const ONLY_TOOLS: &str = "the body lies among others, which only tools press: set a tool";
 /// Ramping: the thread has just started.
 pub const STARTED: &str = "started";
 /// Ramping: the device has just become ready.
@@ -43,7 +45,7 @@ pub const NOT_STARTED: &str = "not started";
 pub const ASKED: &str = "asked to stop";
 
 /// All of them but the empty one and those of [`after`].
-pub const ALL: [&str; 19] = [
+pub const ALL: [&str; 20] = [
     NO_ANSWER,
     NO_STATE,
     NOT_READY,
@@ -53,6 +55,7 @@ pub const ALL: [&str; 19] = [
     NO_ANGLES,
     STRETCHED,
     OTHER_BODY,
+    ONLY_TOOLS,
     STARTED,
     READY,
     SWITCHED_ON,

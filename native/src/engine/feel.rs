@@ -4,9 +4,8 @@ use glam::{DMat3, DVec3};
 
 use super::joint::Joint;
 use crate::algebra::MOST_POINTS;
-use crate::algebra::cholesky::dot;
-use crate::control::coupling::largest_eigenvalue;
 use crate::tool::collider::{Collider, Felt};
+use crate::tool::complementarity::stiffness::with_stuck;
 use crate::tool::slot::Slot;
 
 impl Joint {
@@ -58,36 +57,13 @@ impl Joint {
         self.problem.energy_of(&pushes[..self.chosen.len()])
     }
 
-    /// sum_ij n_i [(N' C N)^-1]_ij n_j' over the points of a tool that press a body, at unit modulus.
+    /// How the points of a tool that press a body resist it, N/m at unit modulus.
     fn stiffness(&mut self, pair: [u8; 2]) -> DMat3 {
-        if !self.problem.take_face() {
-            return DMat3::ZERO;
-        }
-        let (face, factor) = self.problem.on_face();
-        let mut columns = [[0.0; MOST_POINTS]; 3];
-        let mut first = face.len();
-        for (place, &i) in face.iter().enumerate() {
-            let slot = &self.patch.slots()[self.chosen[i]];
-            if slot.is_of(pair) {
-                first = first.min(place);
-                for (column, n) in columns.iter_mut().zip(slot.normal.to_array()) {
-                    column[place] = n;
-                }
-            }
-        }
-        factor.solve_lower_three(&mut columns, first);
-        let product = |a: usize, b: usize| {
-            dot(
-                &columns[a][first..face.len()],
-                &columns[b][first..face.len()],
-            )
-        };
-        let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)];
-        DMat3::from_cols(
-            DVec3::new(product(0, 0), xy, zx),
-            DVec3::new(xy, product(1, 1), yz),
-            DVec3::new(zx, yz, product(2, 2)),
-        )
+        let (patch, chosen) = (&self.patch, &self.chosen);
+        self.problem.stiffness(|unknown| {
+            let slot = &patch.slots()[chosen[unknown]];
+            slot.is_of(pair).then_some(slot.normal)
+        })
     }
 }
 
@@ -98,15 +74,4 @@ fn held(slot: &Slot, moved: DVec3) -> f64 {
     let spring = slot.spring * slot.push;
     let off = slot.seen.0 + spring;
     0.5 * (slot.force.dot(moved - slot.remembered) + spring * slot.push) - off * slot.push
-}
-
-/// The stiffness of a tool without friction, with what points that stick add aside: where all stick
-/// the tool counts as held on all sides as it is where that is stiffest. More than it is: a patch
-/// that sticks is at most nine tenths as stiff aside as into the body (R. D. Mindlin, 1949).
-fn with_stuck(stiffness: DMat3, stuck: f64) -> DMat3 {
-    if stuck == 0.0 {
-        return stiffness;
-    }
-    let all_round = DMat3::from_diagonal(DVec3::splat(largest_eigenvalue(&stiffness)));
-    stiffness + (all_round - stiffness) * stuck
 }

@@ -19,7 +19,7 @@ pub(super) struct Between {
 }
 
 impl Between {
-    /// How a slot moves by a force on another, m/N.
+    /// How a slot moves by a force on another, m/N at unit modulus.
     fn block(&self, moved: usize, loaded: usize) -> DMat3 {
         let block = &self.blocks[loaded * self.room + moved];
         DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| block[4 * c + r])))
@@ -36,10 +36,10 @@ impl Between {
         }
     }
 
-    /// Takes in a slot behind the last: how each up to it moves by a force on it, m/N.
+    /// Takes in a slot behind the last: how each up to it moves by a force on it.
     pub(super) fn enter(&mut self, new: usize, moves: impl Fn(usize) -> DMat3) {
         if new >= self.room {
-            self.grow(new);
+            self.grow((2 * self.room).max(ROOM), new);
         }
         for other in 0..=new {
             self.put(other, new, &moves(other));
@@ -59,8 +59,14 @@ impl Between {
         self.put(slot, slot, &own);
     }
 
-    fn grow(&mut self, slots: usize) {
-        let room = (2 * self.room).max(ROOM);
+    /// Has room for so many slots, of which there are none yet.
+    pub(super) fn reserve(&mut self, room: usize) {
+        if room > self.room {
+            self.grow(room, self.room);
+        }
+    }
+
+    fn grow(&mut self, room: usize, slots: usize) {
         let mut blocks = vec![[0.0; 12]; room * room];
         for slot in 0..slots {
             let from = &self.blocks[slot * self.room..][..slots];

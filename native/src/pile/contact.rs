@@ -2,10 +2,45 @@
 
 use glam::DVec3;
 
+/// Points of the other body that carry a contact's force at most.
+pub(super) const MOST_SHARES: usize = 16;
+
+/// Contact points that carry a force, and their shares.
+#[derive(Debug, Clone, Copy)]
+pub struct Shares {
+    count: usize,
+    shares: [(u32, f64); MOST_SHARES],
+}
+
+impl Shares {
+    /// Nobody carries anything yet.
+    pub(super) const NONE: Self = Self {
+        count: 0,
+        shares: [(0, 0.0); MOST_SHARES],
+    };
+
+    /// Adds one; there must be room.
+    pub(super) fn push(&mut self, point: u32, share: f64) {
+        self.shares[self.count] = (point, share);
+        self.count += 1;
+    }
+}
+
+impl std::ops::Deref for Shares {
+    type Target = [(u32, f64)];
+
+    #[inline]
+    fn deref(&self) -> &[(u32, f64)] {
+        &self.shares[..self.count]
+    }
+}
+
 /// What a point meets, by number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Against {
-    /// A rigid one.
+    /// A tool that a hand leads.
+    Finger(usize),
+    /// A rigid one that bears.
     Obstacle(usize),
     /// Another body.
     Body(usize),
@@ -23,7 +58,7 @@ pub struct Contact {
     /// What it meets.
     pub against: Against,
     /// Contact points of the other body that carry the force there, and their shares.
-    pub shares: Vec<(u32, f64)>,
+    pub shares: Shares,
     /// Where the point is on the other, in whose frame, at rest, m.
     pub place: DVec3,
     /// Triangle of the other body that it met there.
@@ -32,8 +67,12 @@ pub struct Contact {
     pub normal: DVec3,
     /// From the other, m.
     pub gap: f64,
+    /// How much it is on the other, from 1 to 0 beyond an edge.
+    pub(super) presence: f64,
     /// Force on the point's body along the normal, N.
     pub push: f64,
+    /// How much more it gives way than its bodies do, m/N.
+    pub(super) spring: f64,
     /// Force on it across, by friction, in the world, N.
     pub aside: DVec3,
     /// Where on the other the point stuck.
@@ -50,12 +89,14 @@ impl Contact {
             point,
             own: [(point, 1.0)],
             against,
-            shares: Vec::new(),
+            shares: Shares::NONE,
             place: DVec3::ZERO,
             triangle: 0,
             normal: DVec3::ZERO,
             gap: f64::INFINITY,
+            presence: 1.0,
             push: 0.0,
+            spring: 0.0,
             aside: DVec3::ZERO,
             anchor: None,
             slips: false,
@@ -83,10 +124,19 @@ impl Contact {
     pub(super) fn sign_on(&self, body: usize) -> f64 {
         if self.body == body {
             1.0
-        } else if self.against == Against::Body(body) {
+        } else if self.other() == Some(body) {
             -1.0
         } else {
             0.0
+        }
+    }
+
+    /// The other body, if it is one.
+    #[inline]
+    pub(super) fn other(&self) -> Option<usize> {
+        match self.against {
+            Against::Body(number) => Some(number),
+            Against::Finger(_) | Against::Obstacle(_) => None,
         }
     }
 
@@ -95,7 +145,7 @@ impl Contact {
     pub(super) fn shares_on(&self, body: usize) -> &[(u32, f64)] {
         if self.body == body {
             &self.own
-        } else if self.against == Against::Body(body) {
+        } else if self.other() == Some(body) {
             &self.shares
         } else {
             &[]

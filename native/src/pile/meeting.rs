@@ -6,10 +6,9 @@ use glam::DVec3;
 
 use super::contact::{Against, Contact};
 use super::member::Member;
-use super::obstacle::Obstacle;
+use super::obstacle::{Around, Rigid};
 use super::outline::met;
 use super::shares::shares;
-use crate::algebra::MOST_POINTS;
 
 /// Points within so many distances between them are looked at.
 const MARGIN: f64 = 0.5;
@@ -34,102 +33,138 @@ fn finer(members: &[Member], first: usize, second: usize) -> [usize; 2] {
 /// A point of a body and what it is near to.
 type Near = (usize, u32, Against);
 
-/// Has contacts come that are near, and go that are far.
-pub(super) fn meet(contacts: &mut Vec<Contact>, members: &[Member], obstacles: &[Obstacle]) {
-    let mut found: Vec<Near> = Vec::new();
-    let stays = |contact: &Contact| {
-        let margin = FORGOTTEN * MARGIN * members[contact.body].surface.spacing();
-        contact.push > 0.0 || contact.gap <= margin
-    };
-    // Those that stay need not be found.
-    let staying: HashSet<Near> = (contacts.iter().filter(|contact| stays(contact)))
-        .map(|contact| (contact.body, contact.point, contact.against))
-        .collect();
-    for body in 0..members.len() {
-        for number in 0..obstacles.len() {
-            near_obstacle(&mut found, members, body, obstacles, number);
+/// Points that are found near anything in a tick at most.
+pub(super) const MOST_FOUND: usize = 2048;
+/// Contacts that there are at most.
+pub(super) const MOST_CONTACTS: usize = 2 * MOST_FOUND;
+
+/// Memory to find contacts in: as much as it ever needs.
+#[derive(Debug, Clone)]
+pub(super) struct Meeting {
+    found: Vec<Near>,
+    staying: HashSet<Near>,
+    missing: HashSet<Near>,
+}
+
+impl Default for Meeting {
+    fn default() -> Self {
+        Self {
+            found: Vec::with_capacity(MOST_FOUND),
+            staying: HashSet::with_capacity(MOST_CONTACTS),
+            missing: HashSet::with_capacity(MOST_FOUND),
         }
-        for other in body + 1..members.len() {
-            let [body, other] = finer(members, body, other);
-            if members[body].free.is_some() || members[other].free.is_some() {
-                near_body(&mut found, members, [body, other], &staying);
+    }
+}
+
+impl Meeting {
+    fn offer(&mut self, near: Near) {
+        if self.found.len() < MOST_FOUND {
+            self.found.push(near);
+        }
+    }
+
+    /// Has contacts come that are near, and go that are far.
+    pub(super) fn meet(
+        &mut self,
+        contacts: &mut Vec<Contact>,
+        members: &[Member],
+        around: &Around<'_>,
+    ) {
+        self.found.clear();
+        let stays = |contact: &Contact| {
+            let margin = FORGOTTEN * MARGIN * members[contact.body].surface.spacing();
+            contact.push > 0.0 || contact.gap <= margin
+        };
+        // Those that stay need not be found.
+        self.staying.clear();
+        let staying = contacts.iter().filter(|contact| stays(contact));
+        (self.staying).extend(staying.map(|told| (told.body, told.point, told.against)));
+        for body in 0..members.len() {
+            for (against, rigid) in around.all() {
+                self.near_rigid(&members[body], (body, against), &rigid);
+            }
+            for other in body + 1..members.len() {
+                let [body, other] = finer(members, body, other);
+                if members[body].free.is_some() || members[other].free.is_some() {
+                    self.near_body(members, [body, other]);
+                }
             }
         }
+        self.missing.clear();
+        self.missing.extend(self.found.iter().copied());
+        let missing = &mut self.missing;
+        contacts.retain(|contact| {
+            let is_found = missing.remove(&(contact.body, contact.point, contact.against));
+            is_found || stays(contact)
+        });
+        // In the order in which they were found: what is reckoned does not depend on a table's.
+        let new = self.found.iter().filter(|near| missing.contains(near));
+        let new = new.map(|&(body, point, against)| Contact::new(body, point, against));
+        let room = MOST_CONTACTS.saturating_sub(contacts.len());
+        contacts.extend(new.take(room));
     }
-    let mut missing: HashSet<Near> = found.iter().copied().collect();
-    contacts.retain(|contact| {
-        let is_found = missing.remove(&(contact.body, contact.point, contact.against));
-        is_found || stays(contact)
-    });
-    // In the order in which they were found: what is reckoned does not depend on a table's.
-    let new = found.into_iter().filter(|near| missing.contains(near));
-    contacts.extend(new.map(|(body, point, against)| Contact::new(body, point, against)));
-}
 
-fn near_obstacle(
-    found: &mut Vec<Near>,
-    members: &[Member],
-    body: usize,
-    obstacles: &[Obstacle],
-    number: usize,
-) {
-    let member = &members[body];
-    let tool = &obstacles[number].tool;
-    let pose = member.placement.to_body(&obstacles[number].pose);
-    let margin = MARGIN * member.surface.spacing();
-    let is_near =
-        |middle: DVec3, radius| tool.least_distance(pose.to_tool(middle)) <= margin + radius;
-    member.surface.tree().visit(is_near, |point| {
-        let at = member.surface.points()[point as usize].position;
-        if tool.distance(pose.to_tool(at)).0 <= margin {
-            found.push((body, point, Against::Obstacle(number)));
-        }
-    });
-}
-
-fn near_body(
-    found: &mut Vec<Near>,
-    members: &[Member],
-    [body, other]: [usize; 2],
-    staying: &HashSet<Near>,
-) {
-    let (member, against) = (&members[body], &members[other]);
-    let margin = MARGIN * member.surface.spacing();
-    let beside = BESIDE * member.surface.spacing();
-    let (middle, reach) = against.around;
-    let middle = member
-        .placement
-        .place_to_body(against.placement.to_world(middle));
-    if middle.distance(member.around.0) > reach + member.around.1 + margin {
-        return;
+    fn near_rigid(
+        &mut self,
+        member: &Member,
+        (body, against): (usize, Against),
+        rigid: &Rigid<'_>,
+    ) {
+        let pose = member.placement.to_body(&rigid.pose);
+        let margin = MARGIN * member.surface.spacing();
+        let is_near = |middle: DVec3, radius| {
+            rigid.tool.least_distance(pose.to_tool(middle)) <= margin + radius
+        };
+        member.surface.tree().visit(is_near, |point| {
+            let at = member.surface.points()[point as usize].position;
+            if rigid.tool.distance(pose.to_tool(at)).0 <= margin {
+                self.offer((body, point, against));
+            }
+        });
     }
-    let is_near = |ball: DVec3, radius| ball.distance(middle) <= reach + radius + margin;
-    let mut triangle = 0;
-    member.surface.tree().visit(is_near, |point| {
-        let at = &member.surface.points()[point as usize];
-        let place = (against.placement).place_to_body(member.placement.to_world(at.position));
-        let is_known = staying.contains(&(body, point, Against::Body(other)));
-        if is_known || !against.is_around(place, margin) {
+
+    fn near_body(&mut self, members: &[Member], [body, other]: [usize; 2]) {
+        let (member, against) = (&members[body], &members[other]);
+        let margin = MARGIN * member.surface.spacing();
+        let beside = BESIDE * member.surface.spacing();
+        let (middle, reach) = against.around;
+        let middle = member
+            .placement
+            .place_to_body(against.placement.to_world(middle));
+        if middle.distance(member.around.0) > reach + member.around.1 + margin {
             return;
         }
-        let facing = member.placement.rotation * at.normal;
-        let facing = against.placement.direction_to_body(facing);
-        if let Some(near) = met(against.body(), place, facing, triangle, beside) {
-            triangle = near.triangle;
-            if near.gap <= margin {
-                found.push((body, point, Against::Body(other)));
+        let is_near = |ball: DVec3, radius| ball.distance(middle) <= reach + radius + margin;
+        let mut triangle = 0;
+        member.surface.tree().visit(is_near, |point| {
+            let at = &member.surface.points()[point as usize];
+            let place = (against.placement).place_to_body(member.placement.to_world(at.position));
+            let is_known = self.staying.contains(&(body, point, Against::Body(other)));
+            if is_known || !against.is_around(place, margin) {
+                return;
             }
-        }
-    });
+            let facing = member.placement.rotation * at.normal;
+            let facing = against.placement.direction_to_body(facing);
+            if let Some(near) = met(against.body(), place, facing, triangle, beside) {
+                triangle = near.triangle;
+                if near.gap <= margin {
+                    self.offer((body, point, Against::Body(other)));
+                }
+            }
+        });
+    }
 }
 
 /// Finds where a contact's point is on what it meets, how far from it and which way out.
-pub(super) fn look(contact: &mut Contact, members: &[Member], obstacles: &[Obstacle]) {
+pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_>) {
     let member = &members[contact.body];
     let place = member.place(contact.point);
     match contact.against {
-        Against::Obstacle(number) => {
-            let Obstacle { tool, pose, .. } = &obstacles[number];
+        Against::Finger(_) | Against::Obstacle(_) => {
+            let Some(Rigid { tool, pose, .. }) = around.of(contact.against) else {
+                contact.gap = f64::INFINITY;
+                return;
+            };
             contact.place = pose.to_tool(place);
             let (gap, normal) = tool.distance(contact.place);
             (contact.gap, contact.normal) = (gap, pose.rotation * normal);
@@ -154,6 +189,7 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], obstacles: &[Obsta
             ) {
                 Some(met) => {
                     (contact.gap, contact.triangle) = (met.gap, met.triangle);
+                    contact.presence = met.presence;
                     contact.normal = other.placement.rotation * met.normal;
                 }
                 None => contact.gap = f64::INFINITY,
@@ -162,21 +198,34 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], obstacles: &[Obsta
     }
 }
 
-/// Contacts that may press in this tick: those that do, and the nearest others.
-pub(super) fn chosen(contacts: &[Contact], members: &[Member]) -> Vec<usize> {
+/// Contacts that may press in this tick: those that do, and the nearest others, as many as there is
+/// room for.
+pub(super) fn choose(
+    chosen: &mut Vec<usize>,
+    contacts: &[Contact],
+    members: &[Member],
+    room: usize,
+) {
     let is_near = |contact: &Contact| {
         let watched = WATCHED * members[contact.body].surface.spacing();
         contact.gap.is_finite() && (contact.push > 0.0 || contact.gap <= watched)
     };
+    chosen.clear();
     let near = contacts.iter().enumerate().filter(|near| is_near(near.1));
-    let mut chosen: Vec<usize> = near.map(|(number, _)| number).collect();
-    if chosen.len() > MOST_POINTS {
-        let rank = |&number: &usize| contacts[number].rank();
-        chosen.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
-        chosen.truncate(MOST_POINTS);
+    chosen.extend(near.map(|(number, _)| number));
+    if chosen.len() > room {
+        rank(chosen, contacts);
+        chosen.truncate(room);
         chosen.sort_unstable();
     }
-    chosen
+}
+
+/// Puts contacts first that are to be kept first where there is no room for all.
+pub(super) fn rank(numbers: &mut [usize], contacts: &[Contact]) {
+    numbers.sort_unstable_by(|&a, &b| {
+        let [first, second] = [a, b].map(|number| contacts[number].rank());
+        first.total_cmp(&second).then(a.cmp(&b))
+    });
 }
 
 /// Shares the force of a contact out anew, where its point is on the other body now.

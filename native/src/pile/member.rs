@@ -5,10 +5,11 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::between::Between;
+use crate::algebra::MOST_POINTS;
 use crate::body::surface::Body;
 use crate::contact::cones::mean;
 use crate::contact::ground::{Ground, MOST_TOOLS};
-use crate::contact::mobility::Mobility;
+use crate::contact::mobility::{Mobility, Motion};
 use crate::creep::step::Step;
 use crate::rest::free_body::FreeBody;
 use crate::rest::placement::Placement;
@@ -39,6 +40,14 @@ pub struct Member {
     /// The slot of each contact point, or none.
     slot_of: Vec<u32>,
     between: Between,
+    /// Points that are to be looked at, and in which turn each was last.
+    wanted: Vec<u32>,
+    wanted_in: Vec<u32>,
+    turn: u32,
+    /// How wrenches in N move it in this tick; not at all where it is held.
+    pub(super) mobility: Option<Mobility>,
+    /// How it moved as a whole in the last one, in its frame.
+    pub motion: Motion,
 }
 
 impl Member {
@@ -56,6 +65,11 @@ impl Member {
         let reach = (nodes.iter()).fold(0.0_f64, |most, at| most.max(at.distance(middle)));
         Self {
             slot_of: vec![NONE; surface.points().len()],
+            wanted: Vec::with_capacity(MOST_POINTS),
+            wanted_in: vec![0; surface.points().len()],
+            turn: 0,
+            mobility: None,
+            motion: Motion::default(),
             surface,
             young_modulus,
             free,
@@ -106,11 +120,43 @@ impl Member {
         self.placement.to_world(at + self.moved(point))
     }
 
-    /// Looks at these points, in their order, and no others.
-    pub(super) fn look_at(&mut self, points: &[u32]) {
+    /// Begins anew to say at which points to look.
+    pub(super) fn begin_wanting(&mut self) {
+        self.wanted.clear();
+        self.turn = self.turn.wrapping_add(1);
+    }
+
+    /// Whether a point is to be looked at.
+    #[inline]
+    pub(super) fn wants(&self, point: u32) -> bool {
+        self.wanted_in[point as usize] == self.turn
+    }
+
+    /// How many are to be looked at.
+    #[inline]
+    pub(super) fn wanted(&self) -> usize {
+        self.wanted.len()
+    }
+
+    /// Has a point looked at, too.
+    pub(super) fn want(&mut self, point: u32) {
+        if !self.wants(point) {
+            self.wanted_in[point as usize] = self.turn;
+            self.wanted.push(point);
+        }
+    }
+
+    /// Whether a point is looked at.
+    #[inline]
+    pub(super) fn looks_at(&self, point: u32) -> bool {
+        self.slot_of[point as usize] != NONE
+    }
+
+    /// Looks at the points that are wanted, and no others.
+    pub(super) fn look_at_wanted(&mut self) {
         for slot in (0..self.slots().len()).rev() {
             let point = self.slots()[slot].point;
-            if points.binary_search(&point).is_err() {
+            if !self.wants(point) {
                 self.between.leave(slot, self.slots().len() - 1);
                 self.patch.leave(slot);
                 self.slot_of[point as usize] = NONE;
@@ -126,15 +172,15 @@ impl Member {
             creep: Step::default(),
             mobility: None,
         };
-        for &point in points {
+        self.wanted.sort_unstable();
+        for &point in &self.wanted {
             if self.slot_of[point as usize] == NONE {
-                let new = self.slots().len();
+                let new = self.patch.slots().len();
                 self.patch
                     .enter(&ground, &self.surface, ALL, point, &[true; MOST_TOOLS]);
                 self.slot_of[point as usize] = new as u32;
-                let (patch, compliance) = (&self.patch, 1.0 / self.young_modulus);
-                let moves = |slot| patch.compliance(slot, new) * compliance;
-                self.between.enter(new, moves);
+                let patch = &self.patch;
+                self.between.enter(new, |slot| patch.compliance(slot, new));
             }
         }
     }
@@ -145,11 +191,23 @@ impl Member {
         &self.between
     }
 
-    /// Displaces the slots by these forces on them, N in the body's frame.
-    pub(super) fn load(&mut self, forces: &[DVec3]) {
-        for (slot, force) in self.patch.slots_mut().iter_mut().zip(forces) {
-            slot.force = *force * (1.0 / self.young_modulus);
+    /// Begins to load it with the forces on it: none so far.
+    pub(super) fn begin_loading(&mut self) {
+        let slots = self.patch.slots_mut().iter_mut();
+        slots.for_each(|slot| slot.force = DVec3::ZERO);
+    }
+
+    /// Adds a force, N in its frame, shared out among points that are looked at.
+    pub(super) fn add_load(&mut self, shares: &[(u32, f64)], force: DVec3) {
+        let force = force / self.young_modulus;
+        for &(point, share) in shares {
+            let slot = self.slot(point);
+            self.patch.slots_mut()[slot].force += force * share;
         }
+    }
+
+    /// Displaces the slots by their loads.
+    pub(super) fn give_way(&mut self) {
         self.patch.displace();
     }
 
@@ -166,10 +224,30 @@ impl Member {
         slots.map(|slot| (slot.point, slot.force * self.young_modulus))
     }
 
-    /// How wrenches in N move it in `dt` s; not at all where it is held.
-    pub(super) fn mobility(&self, gravity: DVec3, dt: f64) -> Option<Mobility> {
+    /// Begins a tick of `dt` s.
+    pub(super) fn begin(&mut self, gravity: DVec3, dt: f64) {
         let own = self.placement.direction_to_body(gravity);
-        self.free.map(|free| free.mobility(own, 1.0, dt))
+        self.mobility = self.free.map(|free| free.mobility(own, 1.0, dt));
+    }
+
+    /// It moves as a whole by its weight and what presses it.
+    pub(super) fn move_on(&mut self) {
+        let Some(mobility) = &self.mobility else {
+            return;
+        };
+        let points = self.surface.points();
+        let loads = (self.loads()).map(|(point, force)| (points[point as usize].position, force));
+        self.motion = mobility.motion(loads);
+        if self.motion.is_finite() {
+            self.placement = self.placement.moved(&self.motion);
+        }
+    }
+
+    /// Takes all memory that it ever needs while it looks at so many points at most.
+    pub(super) fn reserve(&mut self, points: usize) {
+        self.between.reserve(points);
+        self.wanted.reserve(points);
+        self.patch.reserve();
     }
 
     /// How far a place of it gives way to a force, about, m/N.

@@ -4,14 +4,15 @@
 //! equal and opposite to the last bit; both give way under it, each by its own compliance and by its
 //! own motion as a whole, and all contacts of all bodies are found together, without a clock.
 
+pub mod among;
 mod between;
 pub mod contact;
+pub mod laid;
 mod meeting;
 pub mod member;
 pub mod obstacle;
 mod outline;
 pub mod piled;
-mod rubbing;
 pub mod settling;
 mod shares;
-mod system;
+mod solve;

@@ -1,6 +1,63 @@
 //! A rigid tool that bodies meet: a floor, a support, a finger.
 
+use super::contact::{Against, Contact};
+use crate::tool::coefficients::Friction;
 use crate::tool::shape::{Pose, Tool};
+
+/// A rigid tool in a tick.
+#[derive(Debug, Clone, Copy)]
+pub struct Rigid<'a> {
+    /// Its shape.
+    pub tool: &'a Tool,
+    /// In the world.
+    pub pose: Pose,
+    /// Coulomb's.
+    pub friction: Friction,
+    /// From 0 to 1 after it was lifted by a fault: how much it presses.
+    pub presence: f64,
+}
+
+/// All that is rigid in a tick.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Around<'a> {
+    /// Tools that hands lead, by number.
+    pub fingers: &'a [Option<Rigid<'a>>],
+    /// Others.
+    pub obstacles: &'a [Obstacle],
+}
+
+impl<'a> Around<'a> {
+    /// What a contact's point meets, if that is rigid and there.
+    #[inline]
+    pub fn of(&self, against: Against) -> Option<Rigid<'a>> {
+        match against {
+            Against::Finger(number) => *self.fingers.get(number)?,
+            Against::Obstacle(number) => self.obstacles.get(number).map(Obstacle::rigid),
+            Against::Body(_) => None,
+        }
+    }
+
+    /// Coulomb's coefficient of a contact, none before it has stuck; `between` is that of two bodies.
+    #[inline]
+    pub fn coefficient(&self, contact: &Contact, between: f64) -> f64 {
+        match (contact.anchor, contact.against) {
+            (None, _) => 0.0,
+            (_, Against::Body(_)) => between,
+            (_, against) => self
+                .of(against)
+                .map_or(0.0, |r| r.friction.of_one(contact.slips)),
+        }
+    }
+
+    /// All of them.
+    pub fn all(&self) -> impl Iterator<Item = (Against, Rigid<'a>)> + use<'a> {
+        let fingers = self.fingers.iter().enumerate();
+        let fingers = fingers.filter_map(|(number, one)| Some((Against::Finger(number), (*one)?)));
+        let others = self.obstacles.iter().enumerate();
+        let others = others.map(|(number, one)| (Against::Obstacle(number), one.rigid()));
+        fingers.chain(others)
+    }
+}
 
 /// A rigid tool, where it is and where it goes.
 #[derive(Debug, Clone)]
@@ -23,6 +80,16 @@ impl Obstacle {
             pose,
             goal: pose,
             friction,
+        }
+    }
+
+    #[inline]
+    fn rigid(&self) -> Rigid<'_> {
+        Rigid {
+            tool: &self.tool,
+            pose: self.pose,
+            friction: Friction::of(self.friction),
+            presence: 1.0,
         }
     }
 

@@ -17,6 +17,8 @@ pub(super) struct Met {
     /// Out of the body there.
     pub normal: DVec3,
     pub triangle: u32,
+    /// From 1 on it to 0 where it is so far beyond an edge that it meets nothing.
+    pub presence: f64,
 }
 
 /// How a place of another body, whose surface looks along `facing` there, is met; all in the body's
@@ -42,7 +44,8 @@ pub(super) fn met(
     let (closest, normal) = found?;
     let way = place - closest.point;
     let along = normal.dot(way);
-    if (way - normal * along).length() > beside {
+    let beyond_edge = (way - normal * along).length();
+    if beyond_edge > beside {
         return None;
     }
     let corners = body.face(closest.triangle).corners;
@@ -54,6 +57,7 @@ pub(super) fn met(
         gap: along - 0.5 * beyond,
         normal,
         triangle: closest.triangle,
+        presence: 1.0 - beyond_edge / beside,
     })
 }
 

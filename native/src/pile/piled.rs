@@ -1,19 +1,13 @@
 //! Bodies that press each other, tick by tick.
 
-use std::collections::BTreeSet;
-
-use glam::{DMat3, DVec3};
-
 use super::contact::{Against, Contact};
-use super::meeting::{chosen, look, meet, share_out};
+use super::meeting::{MOST_CONTACTS, Meeting, look, rank, share_out};
 use super::member::Member;
-use super::obstacle::Obstacle;
-use super::rubbing::rub;
-use super::system::System;
-use crate::algebra::MOST_POINTS;
-use crate::contact::mobility::{Mobility, Motion};
+use super::obstacle::{Around, Obstacle, Rigid};
+use super::solve::pace::Pace;
+use super::solve::{Given, Solver};
 use crate::rest::resting::Restless;
-use crate::tool::complementarity::Complementarity;
+use glam::DVec3;
 
 /// A force aside within this share of its limit slips.
 const SLIPPING: f64 = 1.0 - 1e-7;
@@ -29,12 +23,13 @@ pub struct Pile {
     pub gravity: DVec3,
     /// Coulomb's coefficient between bodies.
     pub friction: f64,
-    contacts: Vec<Contact>,
-    problem: Complementarity,
-    system: System,
-    /// Of the last solve, by unknown: forces, and how far contacts that rub are away by pushes alone.
-    forces: Vec<f64>,
-    slips: Vec<f64>,
+    pub(super) pace: Pace,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) solver: Solver,
+    meeting: Meeting,
+    /// Contacts by number, those first that are kept first, and which of them there is room for.
+    ranked: Vec<usize>,
+    fits: Vec<bool>,
     time: f64,
 }
 
@@ -51,13 +46,26 @@ impl Pile {
             obstacles,
             gravity,
             friction,
+            pace: Pace::UNHURRIED,
             contacts: Vec::new(),
-            problem: Complementarity::default(),
-            system: System::default(),
-            forces: Vec::new(),
-            slips: Vec::new(),
+            solver: Solver::default(),
+            meeting: Meeting::default(),
+            ranked: Vec::new(),
+            fits: Vec::new(),
             time: 0.0,
         }
+    }
+
+    /// From now on a tick takes bounded work, and no memory.
+    pub fn hurry(&mut self) {
+        self.pace = Pace::IN_TICK;
+        let room = self.pace.room;
+        (self.members.iter_mut()).for_each(|member| member.reserve(room));
+        (self.solver, self.meeting) = (Solver::default(), Meeting::default());
+        self.solver.reserve(room);
+        self.contacts.reserve(MOST_CONTACTS);
+        self.ranked.reserve(MOST_CONTACTS);
+        self.fits.reserve(MOST_CONTACTS);
     }
 
     /// Since the beginning, s.
@@ -70,32 +78,54 @@ impl Pile {
         &self.contacts
     }
 
-    /// One tick of `dt` s: how the bodies moved, each in its frame.
+    /// One tick of `dt` s; each member tells how it moved.
     ///
     /// # Errors
     /// [`Restless::NotANumber`].
-    pub fn tick(&mut self, dt: f64) -> Result<Vec<Motion>, Restless> {
+    pub fn tick(&mut self, dt: f64) -> Result<(), Restless> {
         let stride = self.stride();
         for obstacle in &mut self.obstacles {
             obstacle.go(stride);
         }
-        self.find_contacts();
-        let mobilities: Vec<Option<Mobility>> = (self.members.iter())
-            .map(|member| member.mobility(self.gravity, dt))
-            .collect();
-        self.solve(&mobilities);
+        self.tick_with(&[], dt)
+    }
+
+    /// The same with tools that hands lead, where these are, and obstacles that stay.
+    ///
+    /// # Errors
+    /// [`Restless::NotANumber`].
+    pub(super) fn tick_with(
+        &mut self,
+        fingers: &[Option<Rigid<'_>>],
+        dt: f64,
+    ) -> Result<(), Restless> {
+        self.find_contacts(fingers);
+        for member in &mut self.members {
+            member.begin(self.gravity, dt);
+        }
+        let given = Given {
+            around: around(fingers, &self.obstacles),
+            friction: self.friction,
+            pace: self.pace,
+        };
+        (self.solver).solve(&mut self.contacts, &self.members, &given);
         self.displace();
-        let motions = self.move_on(&mobilities);
-        self.look();
-        self.take_anchors();
+        self.members.iter_mut().for_each(Member::move_on);
+        self.look(fingers);
+        self.take_anchors(fingers);
         self.time += dt;
-        let is_finite = motions.iter().all(Motion::is_finite);
-        let forces = self.contacts.iter().map(Contact::force);
-        if is_finite && forces.into_iter().all(|force| force.is_finite()) {
-            Ok(motions)
+        let mut motions = self.members.iter().map(|member| member.motion);
+        let mut forces = self.contacts.iter().map(Contact::force);
+        if motions.all(|motion| motion.is_finite()) && forces.all(DVec3::is_finite) {
+            Ok(())
         } else {
             Err(Restless::NotANumber)
         }
+    }
+
+    /// Forgets contacts with what is said.
+    pub(super) fn let_go(&mut self, goes: impl Fn(Against) -> bool) {
+        self.contacts.retain(|contact| !goes(contact.against));
     }
 
     /// How far an obstacle goes in a tick at most, m.
@@ -110,59 +140,69 @@ impl Pile {
     }
 
     /// Contacts come and go, and those between bodies share their forces out where they are now.
-    fn find_contacts(&mut self) {
-        meet(&mut self.contacts, &self.members, &self.obstacles);
+    fn find_contacts(&mut self, fingers: &[Option<Rigid<'_>>]) {
+        let around = around(fingers, &self.obstacles);
+        (self.meeting).meet(&mut self.contacts, &self.members, &around);
         // Between bodies, which have not moved since, the last tick has looked.
-        let (members, obstacles) = (&self.members, &self.obstacles);
-        let is_new = |contact: &&mut Contact| {
-            contact.gap.is_infinite() || matches!(contact.against, Against::Obstacle(_))
-        };
+        let is_new =
+            |contact: &&mut Contact| contact.gap.is_infinite() || contact.other().is_none();
         (self.contacts.iter_mut().filter(is_new))
-            .for_each(|contact| look(contact, members, obstacles));
+            .for_each(|contact| look(contact, &self.members, &around));
         self.contacts.retain(|contact| contact.gap.is_finite());
         for contact in &mut self.contacts {
             share_out(contact, &self.members);
         }
-        let points = self.fit();
-        for (member, points) in self.members.iter_mut().zip(&points) {
-            member.look_at(points);
-        }
+        self.fit();
+        self.members.iter_mut().for_each(Member::look_at_wanted);
         self.displace();
-        self.look();
+        self.look(fingers);
     }
 
-    /// Contact points of each body that are looked at. Contacts for which there is no room go, the
-    /// farthest first.
-    fn fit(&mut self) -> Vec<Vec<u32>> {
-        let mut points = vec![BTreeSet::new(); self.members.len()];
-        let mut ranked: Vec<usize> = (0..self.contacts.len()).collect();
-        let rank = |&number: &usize| self.contacts[number].rank();
-        ranked.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
-        let mut fits = vec![false; self.contacts.len()];
-        for number in ranked {
-            let contact = &self.contacts[number];
-            let loads = |body: usize| contact.shares_on(body).iter().map(|&(point, _)| point);
-            fits[number] = points.iter().enumerate().all(|(body, points)| {
-                let new = loads(body).filter(|point| !points.contains(point)).count();
-                points.len() + new <= MOST_POINTS
+    /// Finds which contact points of each body are looked at. Contacts for which there is no room go,
+    /// the farthest first.
+    fn fit(&mut self) {
+        let (members, contacts, pace) = (&mut self.members, &self.contacts, self.pace);
+        members.iter_mut().for_each(Member::begin_wanting);
+        self.ranked.clear();
+        self.ranked.extend(0..contacts.len());
+        rank(&mut self.ranked, contacts);
+        self.fits.clear();
+        self.fits.resize(contacts.len(), false);
+        let mut entered = 0;
+        for &number in &self.ranked {
+            let contact = &contacts[number];
+            let bodies = [Some(contact.body), contact.other()];
+            let new = bodies.into_iter().flatten().map(|body| {
+                let (member, shares) = (&members[body], contact.shares_on(body).iter());
+                let new = shares.filter(|share| !member.wants(share.0));
+                let (wanted, entering) = new.fold((0, 0), |(wanted, entering), share| {
+                    (
+                        wanted + 1,
+                        entering + usize::from(!member.looks_at(share.0)),
+                    )
+                });
+                (member.wanted() + wanted <= pace.room, entering)
             });
-            if fits[number] {
-                for (body, points) in points.iter_mut().enumerate() {
-                    points.extend(loads(body));
+            let (has_room, entering) =
+                new.fold((true, 0), |all, one| (all.0 & one.0, all.1 + one.1));
+            let waits = contact.push == 0.0 && entering > 0 && entered + entering > pace.entering;
+            if has_room && !waits {
+                self.fits[number] = true;
+                entered += entering;
+                for body in bodies.into_iter().flatten() {
+                    let shares = contact.shares_on(body).iter();
+                    shares.for_each(|share| members[body].want(share.0));
                 }
             }
         }
-        let mut fits = fits.into_iter();
-        self.contacts.retain(|_| fits.next() == Some(true));
-        points
-            .into_iter()
-            .map(|points| points.into_iter().collect())
-            .collect()
+        let mut fits = self.fits.iter();
+        self.contacts.retain(|_| fits.next() == Some(&true));
     }
 
-    fn look(&mut self) {
+    fn look(&mut self, fingers: &[Option<Rigid<'_>>]) {
+        let around = around(fingers, &self.obstacles);
         for contact in &mut self.contacts {
-            look(contact, &self.members, &self.obstacles);
+            look(contact, &self.members, &around);
         }
     }
 
@@ -170,105 +210,22 @@ impl Pile {
     fn displace(&mut self) {
         for (body, member) in self.members.iter_mut().enumerate() {
             let turn = member.placement.rotation.inverse();
-            let mut forces = vec![DVec3::ZERO; member.slots().len()];
+            member.begin_loading();
             for contact in self.contacts.iter().filter(|contact| contact.push > 0.0) {
-                let force = turn * contact.force() * contact.sign_on(body);
-                for &(point, share) in contact.shares_on(body) {
-                    forces[member.slot(point)] += force * share;
+                let sign = contact.sign_on(body);
+                if sign != 0.0 {
+                    member.add_load(contact.shares_on(body), turn * contact.force() * sign);
                 }
             }
-            member.load(&forces);
+            member.give_way();
         }
-    }
-
-    /// Coulomb's coefficient of a contact, none before it has stuck.
-    fn coefficient(&self, contact: &Contact) -> f64 {
-        match (contact.anchor, contact.against) {
-            (None, _) => 0.0,
-            (_, Against::Obstacle(number)) => self.obstacles[number].friction,
-            (_, Against::Body(_)) => self.friction,
-        }
-    }
-
-    /// The frame of what a contact's point meets: its turn, and where a place of it is.
-    fn turn_of(&self, against: Against) -> DMat3 {
-        match against {
-            Against::Obstacle(number) => self.obstacles[number].pose.rotation,
-            Against::Body(number) => DMat3::from_quat(self.members[number].placement.rotation),
-        }
-    }
-
-    /// Finds the forces of all contacts in this tick.
-    fn solve(&mut self, mobilities: &[Option<Mobility>]) {
-        let chosen = chosen(&self.contacts, &self.members);
-        let away: Vec<DVec3> = (chosen.iter())
-            .map(|&number| {
-                let contact = &self.contacts[number];
-                let (first, second) = contact.normal.any_orthonormal_pair();
-                let slip = contact.anchor.map_or(DVec3::ZERO, |anchor| {
-                    self.turn_of(contact.against) * (contact.place - anchor)
-                });
-                DVec3::new(contact.gap, first.dot(slip), second.dot(slip))
-            })
-            .collect();
-        let limits: Vec<f64> = (chosen.iter())
-            .map(|&number| self.coefficient(&self.contacts[number]))
-            .collect();
-        let (system, forces) = (&mut self.system, &mut self.forces);
-        let rubs = (&away[..], |place: usize| limits[place] > 0.0);
-        system.set_up(&self.contacts, &chosen, &self.members, mobilities, rubs);
-        let friction: Vec<f64> = system.rubs.iter().map(|&place| limits[place]).collect();
-        forces.clear();
-        forces.extend(chosen.iter().map(|&number| self.contacts[number].push));
-        forces.extend(system.rubs.iter().flat_map(|&place| {
-            let aside = system.directions[place].transpose() * self.contacts[chosen[place]].aside;
-            [aside.y, aside.z]
-        }));
-        rub(
-            system,
-            &mut self.problem,
-            forces,
-            &friction,
-            &mut self.slips,
-        );
-        for contact in &mut self.contacts {
-            (contact.push, contact.aside) = (0.0, DVec3::ZERO);
-        }
-        let (pushes, asides) = forces.split_at(chosen.len());
-        for (&number, &push) in chosen.iter().zip(pushes) {
-            self.contacts[number].push = push;
-        }
-        for (&place, aside) in system.rubs.iter().zip(asides.chunks_exact(2)) {
-            let aside = DVec3::new(0.0, aside[0], aside[1]);
-            self.contacts[chosen[place]].aside = system.directions[place] * aside;
-        }
-    }
-
-    /// Bodies move as a whole by what presses them.
-    fn move_on(&mut self, mobilities: &[Option<Mobility>]) -> Vec<Motion> {
-        let mut motions = Vec::with_capacity(self.members.len());
-        for (member, mobility) in self.members.iter_mut().zip(mobilities) {
-            let Some(mobility) = mobility else {
-                motions.push(Motion::default());
-                continue;
-            };
-            let points = member.surface.points();
-            let loads =
-                (member.loads()).map(|(point, force)| (points[point as usize].position, force));
-            let motion = mobility.motion(loads);
-            if motion.is_finite() {
-                member.placement = member.placement.moved(&motion);
-            }
-            motions.push(motion);
-        }
-        motions
     }
 
     /// Points that stuck keep their anchors, others have them where they are.
-    fn take_anchors(&mut self) {
-        for number in 0..self.contacts.len() {
-            let limit = self.coefficient(&self.contacts[number]);
-            let contact = &mut self.contacts[number];
+    fn take_anchors(&mut self, fingers: &[Option<Rigid<'_>>]) {
+        let around = around(fingers, &self.obstacles);
+        for contact in &mut self.contacts {
+            let limit = around.coefficient(contact, self.friction);
             if contact.push <= 0.0 {
                 (contact.anchor, contact.slips) = (None, false);
                 continue;
@@ -280,4 +237,8 @@ impl Pile {
             }
         }
     }
+}
+
+fn around<'a>(fingers: &'a [Option<Rigid<'a>>], obstacles: &'a [Obstacle]) -> Around<'a> {
+    Around { fingers, obstacles }
 }

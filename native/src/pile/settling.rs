@@ -15,10 +15,9 @@ const LONGEST_RUBBING: f64 = 2.0;
 
 impl Settles for Pile {
     fn go(&mut self, dt: f64) -> Result<f64, Restless> {
-        let motions = self.tick(dt)?;
-        let ways = motions.iter().zip(&self.members);
-        Ok(ways.fold(0.0_f64, |most, (motion, member)| {
-            most.max(motion.most(member.body().size()))
+        self.tick(dt)?;
+        Ok(self.members.iter().fold(0.0_f64, |most, member| {
+            most.max(member.motion.most(member.body().size()))
         }))
     }
 
@@ -39,6 +38,7 @@ impl Settles for Pile {
         let mut totals = vec![DVec3::ZERO; bodies * others];
         for contact in self.contacts() {
             let other = match contact.against {
+                Against::Finger(_) => continue,
                 Against::Obstacle(number) => number,
                 Against::Body(number) => self.obstacles.len() + number,
             };

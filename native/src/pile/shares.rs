@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::contact::{MOST_SHARES, Shares};
 use crate::tool::points::ToolSurface;
 
 /// A force is shared by points within so many distances to the third nearest.
@@ -18,60 +19,89 @@ const LEAST_EXTENT: f64 = 1e-6;
 
 /// Contact points that carry a force at a place on the surface, where `normal` is outward, and their
 /// shares.
-pub(super) fn shares(surface: &ToolSurface, place: DVec3, normal: DVec3) -> Vec<(u32, f64)> {
+pub(super) fn shares(surface: &ToolSurface, place: DVec3, normal: DVec3) -> Shares {
     let near = nearest(surface, place, normal);
+    let (near, mut found) = (near.points(), Shares::NONE);
     let Some(&(third, _)) = near.get(2).or(near.last()) else {
-        return Vec::new();
+        return found;
     };
-    let reach = REACH * third.max(f64::MIN_POSITIVE);
+    // Where there are more than carry anything, the first that does not has no share.
+    let last = near
+        .get(MOST_SHARES)
+        .map_or(f64::INFINITY, |&(last, _)| last);
+    let reach = (REACH * third).min(last).max(f64::MIN_POSITIVE);
     let (first, second) = normal.any_orthonormal_pair();
     // 1, and the way from the place along the surface, as shares of the reach.
     let basis = |point: u32| {
         let way = (surface.points()[point as usize].position - place) / reach;
         DVec3::new(1.0, way.dot(first), way.dot(second))
     };
-    let weighted = |&(distance, point): &(f64, u32)| {
-        let inside = 1.0 - (distance / reach).powi(2);
-        (inside > 0.0).then_some((point, inside * inside))
-    };
-    let near: Vec<(u32, f64)> = near.iter().filter_map(weighted).collect();
     let mut moments = DMat3::ZERO;
-    for &(point, weight) in &near {
-        let own = basis(point);
-        moments += outer(own, own * weight);
+    for &(distance, point) in near {
+        let inside = 1.0 - (distance / reach).powi(2);
+        if inside > 0.0 {
+            let (own, weight) = (basis(point), inside * inside);
+            moments += outer(own, own * weight);
+            found.push(point, weight);
+        }
     }
     let extent = moments.y_axis.y + moments.z_axis.z;
     let held = (LEAST_EXTENT * extent).max(f64::MIN_POSITIVE);
     moments += DMat3::from_diagonal(DVec3::new(0.0, held, held));
     let fit = moments.inverse() * DVec3::X;
+    let mut shares = Shares::NONE;
     if !fit.is_finite() {
-        return near
-            .first()
-            .map(|&(point, _)| (point, 1.0))
-            .into_iter()
-            .collect();
+        if let Some(&(point, _)) = found.first() {
+            shares.push(point, 1.0);
+        }
+        return shares;
     }
-    near.iter()
-        .map(|&(point, weight)| (point, weight * fit.dot(basis(point))))
-        .collect()
+    for &(point, weight) in found.iter() {
+        shares.push(point, weight * fit.dot(basis(point)));
+    }
+    shares
 }
 
-/// Points around a place that look as it does, nearest first: three at least, if there are.
-fn nearest(surface: &ToolSurface, place: DVec3, normal: DVec3) -> Vec<(f64, u32)> {
+/// The points nearest to a place, nearest first: one more than may carry its force.
+struct Nearest {
+    count: usize,
+    points: [(f64, u32); MOST_SHARES + 1],
+}
+
+impl Nearest {
+    fn points(&self) -> &[(f64, u32)] {
+        &self.points[..self.count]
+    }
+
+    fn offer(&mut self, distance: f64, point: u32) {
+        let place = (self.points()).partition_point(|&other| other <= (distance, point));
+        if place < self.points.len() {
+            self.count = (self.count + 1).min(self.points.len());
+            self.points[place..self.count].rotate_right(1);
+            self.points[place] = (distance, point);
+        }
+    }
+}
+
+/// Points around a place that look as it does: three at least, if there are.
+fn nearest(surface: &ToolSurface, place: DVec3, normal: DVec3) -> Nearest {
     let mut reach = FIRST_SEARCH * surface.spacing();
     let most = 2.0 * surface.body().size();
     loop {
-        let mut found = Vec::new();
+        let mut found = Nearest {
+            count: 0,
+            points: [(0.0, 0); MOST_SHARES + 1],
+        };
         let within = |middle: DVec3, radius| middle.distance(place) <= reach + radius;
         surface.tree().visit(within, |number| {
             let point = &surface.points()[number as usize];
             let distance = point.position.distance(place);
             if distance <= reach && point.normal.dot(normal) > FACING {
-                found.push((distance, number));
+                found.offer(distance, number);
             }
         });
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let is_enough = found.get(2).is_some_and(|third| REACH * third.0 <= reach);
+        let third = found.points().get(2);
+        let is_enough = third.is_some_and(|third| REACH * third.0 <= reach);
         if is_enough || reach > most {
             return found;
         }
@@ -86,6 +116,20 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_nearest_are_kept_in_their_order() {
+        let mut nearest = Nearest {
+            count: 0,
+            points: [(0.0, 0); MOST_SHARES + 1],
+        };
+        for number in 0..40_u32 {
+            nearest.offer(f64::from(number * 17 % 40), number);
+        }
+        let kept: Vec<f64> = nearest.points().iter().map(|near| near.0).collect();
+        let wanted: Vec<f64> = (0..=MOST_SHARES as u32).map(f64::from).collect();
+        assert_eq!(kept, wanted);
+    }
 
     #[test]
     fn an_outer_product_is_one() {

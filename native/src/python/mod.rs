@@ -42,6 +42,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<rest::resting::Resting>()?;
     module.add_class::<solid::Relaxation>()?;
     module.add_class::<pile::Pile>()?;
+    module.add_class::<pile::PropAmong>()?;
     module.add_class::<fold::MovedSurface>()?;
     module.add_function(wrap_pyfunction!(body::closest::closest_points, module)?)?;
     module.add_function(wrap_pyfunction!(body::polygons::polygons_on_line, module)?)?;

@@ -6,11 +6,14 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::contact::ground::MOST_BODIES;
+use crate::pile::among::Among;
 use crate::pile::contact::{Against, Contact};
+use crate::pile::laid::Lying;
 use crate::pile::member::Member;
 use crate::pile::obstacle::Obstacle;
 use crate::pile::piled;
-use crate::python::rest::prop::placed;
+use crate::python::rest::prop::{Prop, placed};
 use crate::python::rest::resting::restless;
 use crate::python::tool::shape::Tool;
 use crate::python::tool::surface::ToolSurface;
@@ -37,6 +40,29 @@ type Rigid<'py> = (PyRef<'py, Tool>, Triple, Rows, f64);
 pub struct Pile {
     inner: piled::Pile,
     settling: Option<Settling>,
+}
+
+/// A body that nobody holds, among others that it presses.
+#[pyclass(frozen, module = "palpate_servo")]
+pub struct PropAmong {
+    inner: Lying,
+}
+
+/// A body as Python lays it down.
+#[derive(FromPyObject)]
+pub enum Lain<'py> {
+    Alone(PyRef<'py, Prop>),
+    Among(PyRef<'py, PropAmong>),
+}
+
+impl Lain<'_> {
+    /// Itself, for a servo.
+    pub fn lying(&self) -> Box<Lying> {
+        Box::new(match self {
+            Self::Alone(prop) => Lying::Alone(prop.inner.clone()),
+            Self::Among(among) => among.inner.clone(),
+        })
+    }
 }
 
 #[pymethods]
@@ -95,13 +121,13 @@ impl Pile {
             "obstacle",
             numbers(&|contact| match contact.against {
                 Against::Obstacle(number) => number as i64,
-                Against::Body(_) => -1,
+                Against::Finger(_) | Against::Body(_) => -1,
             }),
         )?;
         told.set_item(
             "other",
             numbers(&|contact| match contact.against {
-                Against::Obstacle(_) => -1,
+                Against::Finger(_) | Against::Obstacle(_) => -1,
                 Against::Body(number) => number as i64,
             }),
         )?;
@@ -117,7 +143,7 @@ impl Pile {
         let mut shared: [Vec<i64>; 2] = [Vec::new(), Vec::new()];
         let mut shares = Vec::new();
         for (number, contact) in pressed.iter().enumerate() {
-            for &(point, share) in &contact.shares {
+            for &(point, share) in contact.shares.iter() {
                 shared[0].push(number as i64);
                 shared[1].push(i64::from(point));
                 shares.push(share);
@@ -128,6 +154,19 @@ impl Pile {
         told.set_item("shared_point", PyArray1::from_vec(py, point))?;
         told.set_item("share", PyArray1::from_vec(py, shares))?;
         Ok(told)
+    }
+
+    fn laid(&self) -> PyResult<PropAmong> {
+        let count = self.inner.members.len();
+        if count > MOST_BODIES {
+            return Err(PyValueError::new_err(format!(
+                "{count} bodies press each other; in a servo at most {MOST_BODIES} may"
+            )));
+        }
+        let among = Among::new(self.inner.clone());
+        Ok(PropAmong {
+            inner: Lying::Among(among),
+        })
     }
 
     fn lead(&mut self, obstacle: usize, position: Triple, rotation: Rows) -> PyResult<()> {
@@ -142,7 +181,7 @@ impl Pile {
     fn tick(&mut self, dt: f64) -> PyResult<()> {
         let dt = positive("dt", dt)?;
         self.settling = None;
-        self.inner.tick(dt).map(drop).map_err(restless)
+        self.inner.tick(dt).map_err(restless)
     }
 
     fn settle(&mut self, py: Python<'_>) -> PyResult<()> {

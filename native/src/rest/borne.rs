@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::prop::Support;
 use crate::contact::ground::MOST_SUPPORTS;
 use crate::tool::slot::MOST_NODES;
 
@@ -32,12 +31,11 @@ impl Borne {
         &self.nodes[..self.count]
     }
 
-    /// Becomes what bears a body in a tick; nothing without supports. Allocates nothing.
-    pub fn show(&mut self, tick: u64, supports: &[Support], young_modulus: f64) {
+    /// Becomes what bears a body in a tick: forces on its nodes, N in its axes. Allocates nothing.
+    pub fn show(&mut self, tick: u64, forces: impl Iterator<Item = (u32, DVec3)>) {
         (self.tick, self.count) = (tick, 0);
-        let forces = supports.iter().flat_map(|one| one.collider.nodal_forces(0));
-        for (shown, &(node, force)) in self.nodes.iter_mut().zip(forces) {
-            *shown = (node, force * young_modulus);
+        for (shown, force) in self.nodes.iter_mut().zip(forces) {
+            *shown = force;
             self.count += 1;
         }
     }

@@ -41,12 +41,8 @@ impl Frame {
     /// A pose on the body, as the hand sees it.
     #[inline]
     pub fn pose(&self, pose: &Pose) -> Pose {
-        Pose {
-            position: self.place(pose.position),
-            rotation: self.0.map_or(pose.rotation, |placement| {
-                DMat3::from_quat(placement.rotation) * pose.rotation
-            }),
-        }
+        self.0
+            .map_or(*pose, |placement| placement.pose_to_world(pose))
     }
 
     /// A direction of the body, as the hand sees it.

@@ -34,6 +34,15 @@ impl Placement {
         }
     }
 
+    /// A pose on the body, in the world.
+    #[inline]
+    pub fn pose_to_world(&self, pose: &Pose) -> Pose {
+        Pose {
+            position: self.to_world(pose.position),
+            rotation: DMat3::from_quat(self.rotation) * pose.rotation,
+        }
+    }
+
     /// A place in the world, as seen from the body.
     #[inline]
     pub fn place_to_body(&self, place: DVec3) -> DVec3 {

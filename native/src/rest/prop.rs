@@ -37,9 +37,6 @@ pub struct Prop {
     pub supports: Vec<Support>,
 }
 
-/// A body as one that nobody holds, or none that is held.
-pub type Laid = Option<Box<Prop>>;
-
 impl Prop {
     /// Whether it is this body.
     pub fn is(&self, body: &Body) -> bool {
@@ -53,6 +50,12 @@ impl Prop {
         let supports = self.supports.iter();
         let held = supports.filter_map(|support| support.collider.felt().ok());
         held.map(|felt| felt.energy).sum::<f64>() - self.free.mass * self.gravity.dot(centre)
+    }
+
+    /// Forces of its supports on its nodes, at unit modulus.
+    pub fn borne(&self) -> impl Iterator<Item = (u32, DVec3)> + '_ {
+        let supports = self.supports.iter();
+        supports.flat_map(|one| one.collider.nodal_forces(0).iter().copied())
     }
 
     /// How wrenches move it in `dt` s.

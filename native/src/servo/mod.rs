@@ -29,9 +29,9 @@ use crate::creep::shown::Remembered;
 use crate::creep::step::Step;
 use crate::device::Fault;
 use crate::engine::Engine;
+use crate::pile::laid::{Laid, Lying};
 use crate::rest::borne::Borne;
 use crate::rest::frame::Frame;
-use crate::rest::prop::Laid;
 use crate::servo::exchange::bodies::Holder;
 use crate::servo::exchange::rings::Taker;
 use crate::servo::finger::{Finger, Followed, Touch};
@@ -92,7 +92,13 @@ impl Servo {
             settings.feel.mode = ContactMode::Consistent;
         }
         let dt = 1.0 / f64::from(options.rate_hz);
-        let creep = creep_of(&settings, &body, dt);
+        let is_among = self.lying(&body).is_some_and(Lying::is_among);
+        let creep = if is_among {
+            // As it gives way in the end: others would have to remember, too.
+            Step::default()
+        } else {
+            creep_of(&settings, &body, dt)
+        };
         let relaxed = settings.young_modulus;
         settings.young_modulus *= creep.firmness();
         let firm = self.firm(&settings, frame.is_held() && creep.is_none(), dt);
@@ -108,6 +114,7 @@ impl Servo {
             body: &body,
             body_number: number,
             body_replaced: is_other || is_laid,
+            is_among,
             frame,
             settings: &settings,
             options: &options,
@@ -158,7 +165,16 @@ impl Servo {
         for ((led, finger), followed) in led.iter_mut().zip(&mut self.fingers).zip(followed) {
             *led = (followed.as_ref()).and_then(|followed| finger.lead(followed, is_beside));
         }
-        let mut prop = self.prop.held.as_deref_mut().filter(|_| moves);
+        let mut prop = match self.prop.held.as_deref_mut().filter(|_| moves) {
+            Some(Lying::Among(among)) => {
+                among.tick(&mut led, settings.young_modulus, moment.dt);
+                return each(&mut self.fingers, |k, finger| {
+                    Some(finger.feel(followed[k].as_ref()?, None))
+                });
+            }
+            Some(Lying::Alone(prop)) => Some(prop),
+            None => None,
+        };
         let ground = Ground {
             body: moment.body,
             number: moment.body_number,
@@ -184,7 +200,7 @@ impl Servo {
     /// The contact of each finger with what it pays for sliding.
     fn pay(&mut self, moment: &Moment<'_>, touches: &Each<Touch>) -> Each<Touch> {
         let prop = (self.prop.held.as_ref()).filter(|_| !moment.frame.is_held());
-        let stored = prop.map_or(0.0, |prop| prop.stored());
+        let stored = prop.map_or(0.0, |lying| lying.stored());
         let mut beside = stored - std::mem::replace(&mut self.stored, stored);
         if moment.body_replaced {
             (self.toll, beside) = (Toll::default(), 0.0);
@@ -198,6 +214,7 @@ impl Servo {
     }
 
     fn publish(&mut self, shots: &Each<Snapshot>, frame: &Frame, moment: &Moment<'_>) {
+        self.show_others(frame.is_held());
         let published = self.snapshots.input_buffer_mut();
         published.count = self.fingers.len();
         published.placement = frame.placement();
@@ -220,29 +237,12 @@ impl Servo {
 
     /// The frame of a body where it is now: one that nobody holds, if it is the one that was laid down.
     fn frame(&self, body: &Body) -> Frame {
-        let prop = self.prop.held.as_ref().filter(|prop| prop.is(body));
-        prop.map_or_else(Frame::default, |prop| Frame::of(prop.placement))
+        (self.lying(body)).map_or_else(Frame::default, |lying| Frame::of(lying.placement()))
     }
 
-    /// Publishes what the body remembers, where that is or was anything.
-    fn show_memory(&mut self, tick: u64, young_modulus: f64) {
-        let memory = &self.engine.memories()[0];
-        if !(memory.is_empty() && self.remembers_nothing) {
-            (self.remembered.input_buffer_mut()).show(tick, memory, young_modulus);
-            self.remembered.publish();
-        }
-        self.remembers_nothing = memory.is_empty();
-    }
-
-    /// Publishes what bears the body, where that is or was anything.
-    fn show_borne(&mut self, tick: u64, is_held: bool, young_modulus: f64) {
-        let prop = self.prop.held.as_ref().filter(|_| !is_held);
-        let supports = prop.map_or(&[][..], |prop| &prop.supports);
-        if !(supports.is_empty() && self.nothing_bears) {
-            (self.borne.input_buffer_mut()).show(tick, supports, young_modulus);
-            self.borne.publish();
-        }
-        self.nothing_bears = supports.is_empty();
+    /// The body as one that nobody holds, if it is the one that was laid down.
+    fn lying(&self, body: &Body) -> Option<&Lying> {
+        (self.prop.held.as_deref()).filter(|lying| lying.is(body))
     }
 
     /// Leaves all devices limp and says so.

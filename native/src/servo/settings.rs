@@ -117,6 +117,8 @@ pub struct Moment<'a> {
     pub body_number: u32,
     /// The body is another one since this tick, or was laid elsewhere.
     pub body_replaced: bool,
+    /// It is among others that it presses: only tools feel it.
+    pub is_among: bool,
     /// The body's frame, as the hands see it when the tick begins.
     pub frame: Frame,
     /// How the body gives way with time in this tick.

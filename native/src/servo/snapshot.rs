@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::MOST_BODIES;
 pub use crate::control::state::State;
 use crate::device::reason;
 use crate::device::{Fault, LinkReport};
@@ -85,6 +86,10 @@ pub struct Published {
     pub held: f64,
     /// Where the body is after the tick; one that is held stays.
     pub placement: Placement,
+    /// Where the others are that it presses, and how many of these there are.
+    pub others: [Placement; MOST_BODIES - 1],
+    /// Beyond, nothing.
+    pub other_count: usize,
 }
 
 impl Published {

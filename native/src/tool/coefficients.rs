@@ -34,15 +34,16 @@ impl Friction {
         self.sticking.is_finite() && self.slipping >= 0.0 && self.slipping <= self.sticking
     }
 
+    /// Of a point that slips or sticks.
+    #[inline]
+    pub(crate) fn of_one(&self, slips: bool) -> f64 {
+        if slips { self.slipping } else { self.sticking }
+    }
+
     /// The most that a point bears aside; nothing in the first tick, when it has no anchor yet.
     #[inline]
     pub(super) fn limit(&self, slot: &Slot) -> f64 {
-        let coefficient = if slot.slips {
-            self.slipping
-        } else {
-            self.sticking
-        };
-        slot.anchor.map_or(0.0, |_| coefficient * slot.push)
+        (slot.anchor).map_or(0.0, |_| self.of_one(slot.slips) * slot.push)
     }
 }
 

@@ -8,6 +8,7 @@
 //! points come and go.
 
 mod face;
+pub(crate) mod stiffness;
 
 use crate::algebra::cholesky::{Factor, dot, dot_within};
 use crate::algebra::wide::widely;

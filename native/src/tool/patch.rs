@@ -1,5 +1,6 @@
 //! The contact points near all tools, and how each gives way to a force on each other.
 
+mod memory;
 mod products;
 mod response;
 mod slot_numbers;

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use palpate_servo::body::surface::Body;
 use palpate_servo::control::safety::Limits;
 use palpate_servo::device::{Device, DeviceFrame, Fault, Probe, Reading};
-use palpate_servo::rest::prop::Laid;
+use palpate_servo::pile::laid::Laid;
 use palpate_servo::servo::Servo;
 use palpate_servo::servo::exchange::bodies::Hand;
 use palpate_servo::servo::exchange::rings::Giver;

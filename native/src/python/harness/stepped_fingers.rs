@@ -13,7 +13,7 @@ use crate::control::safety::Limits;
 use crate::device::{Device, DeviceFrame, Probe, Reading};
 use crate::python::body::surface::Body;
 use crate::python::harness::stepping::Stepping;
-use crate::python::rest::prop::Prop;
+use crate::python::pile::Lain;
 use crate::python::servo::settings::{Chosen, Given, firmness};
 use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::python::tool::made::{GivenTool, made, tip};
@@ -110,7 +110,7 @@ impl SteppedFingers {
         settings: Given,
         rate_hz: u32,
         max_force: Option<f64>,
-        prop: Option<PyRef<'_, Prop>>,
+        prop: Option<Lain<'_>>,
     ) -> PyResult<Self> {
         let places = vectors("positions", &positions)?;
         if places.is_empty() || places.len() > MAX_FINGERS {
@@ -148,7 +148,7 @@ impl SteppedFingers {
         let mut stepping = Stepping::new(body, boxed.collect(), &settings, options)?;
         if let Some(prop) = prop {
             // Nothing else is on its way yet.
-            let _ = (stepping.ends.prop).give(Some(Box::new(prop.inner.clone())));
+            let _ = (stepping.ends.prop).give(Some(prop.lying()));
         }
         stepping.tick(Some(0.0));
         Ok(Self(Mutex::new(Stepped { stepping, led })))

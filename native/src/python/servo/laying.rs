@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::python::rest::prop::Prop;
+use crate::pile::laid::Laid;
 use crate::python::servo::refusals::check_finger;
 use crate::python::servo::settings::firmness;
 use crate::python::servo::thread::Servo;
@@ -49,10 +49,9 @@ impl Servo {
     }
 
     /// Lays the body down, or has it held (none).
-    pub(super) fn laid(&self, py: Python<'_>, prop: Option<&Prop>) -> PyResult<()> {
-        let prop = prop.map(|prop| Box::new(prop.inner.clone()));
+    pub(super) fn laid(&self, py: Python<'_>, prop: Laid) -> PyResult<()> {
         let body = locked(&self.body).clone();
-        if (prop.as_ref()).is_some_and(|prop| !Arc::ptr_eq(&prop.body, &body)) {
+        if (prop.as_ref()).is_some_and(|prop| !prop.is(&body)) {
             return Err(PyValueError::new_err(
                 "the prop was made of another body; make it of the Body that the servo touches",
             ));

@@ -10,3 +10,4 @@ pub mod standing;
 pub mod started;
 pub mod starting;
 pub mod thread;
+pub mod told;

@@ -5,16 +5,17 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::device::Fault;
+use crate::python::servo::told::{Posed, numbers, posed};
 use crate::python::vectors::{Matrix, Vector, array, rows, square, table};
 use crate::rest::placement::Placement;
 use crate::servo::pressed_patch::{PressedPatch, PressedPoint};
-use crate::servo::snapshot::Published;
+use crate::servo::snapshot::{Published, Snapshot as Shot};
 
 /// One finger of a tick.
 #[pyclass(frozen, subclass, module = "palpate_servo")]
 #[derive(Clone)]
 pub struct FingerSnapshot {
-    shot: crate::servo::snapshot::Snapshot,
+    shot: Shot,
     /// Patch of a tool that touches.
     patch: Option<Box<PressedPatch>>,
 }
@@ -182,6 +183,7 @@ pub struct Loads {
 pub struct Snapshot {
     fingers: Vec<FingerSnapshot>,
     placement: Placement,
+    others: Vec<Placement>,
     firmness: f64,
     held: f64,
     loads: Loads,
@@ -205,6 +207,7 @@ impl Snapshot {
         let told = Self {
             fingers,
             placement: published.placement,
+            others: published.others[..published.other_count].to_vec(),
             firmness: published.firmness,
             held: published.held,
             loads,
@@ -212,7 +215,7 @@ impl Snapshot {
         Py::new(py, (told, first))
     }
 
-    fn shot(&self) -> &crate::servo::snapshot::Snapshot {
+    fn shot(&self) -> &Shot {
         &self.fingers[0].shot
     }
 }
@@ -244,9 +247,12 @@ impl Snapshot {
         self.held
     }
     #[getter]
-    fn placement<'py>(&self, py: Python<'py>) -> PyResult<(Vector<'py>, Matrix<'py>)> {
-        let turn = square(py, DMat3::from_quat(self.placement.rotation))?;
-        Ok((array(py, self.placement.position), turn))
+    fn placement<'py>(&self, py: Python<'py>) -> PyResult<Posed<'py>> {
+        posed(py, &self.placement)
+    }
+    #[getter]
+    fn others<'py>(&self, py: Python<'py>) -> PyResult<Vec<Posed<'py>>> {
+        self.others.iter().map(|other| posed(py, other)).collect()
     }
     #[getter]
     fn remembered_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
@@ -257,14 +263,15 @@ impl Snapshot {
         table(py, self.loads.remembered.iter().map(|&(_, force)| force))
     }
     fn seen_from_body(&self, py: Python<'_>) -> PyResult<Py<Self>> {
-        let seen = |one: &FingerSnapshot| one.seen_from(&self.placement);
-        let fingers: Vec<_> = self.fingers.iter().map(seen).collect();
+        let seen = self.fingers.iter();
+        let fingers: Vec<_> = seen.map(|one| one.seen_from(&self.placement)).collect();
         let first = fingers[0].clone();
         let told = Self {
             firmness: self.firmness,
             held: self.held,
             fingers,
             placement: self.placement,
+            others: self.others.clone(),
             loads: self.loads.clone(),
         };
         Py::new(py, (told, first))
@@ -284,15 +291,8 @@ impl Snapshot {
 }
 
 /// The patch that was published with this tick of a touching tool.
-fn patch_of(
-    shot: &crate::servo::snapshot::Snapshot,
-    patch: Option<&PressedPatch>,
-) -> Option<Box<PressedPatch>> {
+fn patch_of(shot: &Shot, patch: Option<&PressedPatch>) -> Option<Box<PressedPatch>> {
     let presses_with_tool = shot.touching && shot.hold.is_none();
     let patch = patch.filter(|patch| presses_with_tool && patch.tick == shot.tick);
     patch.cloned().map(Box::new)
-}
-
-fn numbers<'py>(py: Python<'py>, loads: &[(u32, DVec3)]) -> Bound<'py, PyArray1<i64>> {
-    PyArray1::from_iter(py, loads.iter().map(|&(node, _)| i64::from(node)))
 }

@@ -12,9 +12,10 @@ use crate::clock::timing::Timing;
 use crate::contact::cones::MAX_FINGERS;
 use crate::control::coupling::Coupling;
 use crate::device::Device;
+use crate::pile::laid::Laid;
 use crate::python::body::surface::Body;
 use crate::python::device::setups::{DeviceSetup, Lead};
-use crate::python::rest::prop::Prop;
+use crate::python::pile::Lain;
 use crate::python::servo::counters::{finger_counters, stage_counters, timing_counters};
 use crate::python::servo::refusals::{NOT_WHOLE, check_kept};
 use crate::python::servo::samples::{structured, structured_pieces};
@@ -23,7 +24,6 @@ use crate::python::servo::snapshot::{Loads, Snapshot};
 use crate::python::servo::standing::Standing;
 use crate::python::tool::made::{GivenTool, MadeTool};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
-use crate::rest::prop::Laid;
 use crate::servo::paced::locked;
 use crate::servo::settings::{FingerSettings, Options};
 use crate::servo::snapshot::{Published, Sample};
@@ -153,8 +153,8 @@ impl Servo {
         self.equip(py, tool, finger)
     }
 
-    fn lay(&self, py: Python<'_>, prop: Option<PyRef<'_, Prop>>) -> PyResult<()> {
-        self.laid(py, prop.as_deref())
+    fn lay(&self, py: Python<'_>, prop: Option<Lain<'_>>) -> PyResult<()> {
+        self.laid(py, prop.as_ref().map(Lain::lying))
     }
 
     fn set_body(&self, py: Python<'_>, body: &Body, settings: Given) -> PyResult<()> {

@@ -3,3 +3,4 @@
 pub mod bodies;
 pub mod ends;
 pub mod rings;
+mod shown;

@@ -28,7 +28,7 @@ impl Finger {
             let seen = moment.frame.to_body(&self.pose);
             self.point.turn_to(moment.body, seen.position);
         }
-        let tip_fits = self.tips.held.fits(moment.body);
+        let tip_fits = self.tips.held.fits(moment.body) && (self.has_tool() || !moment.is_among);
         let mut found = self.inspect(moment, reading, tip_fits);
         let probe = reading.probe();
         let mut is_set_down = moment.body_replaced || tip_changed;

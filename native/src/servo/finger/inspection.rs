@@ -50,7 +50,9 @@ impl Finger {
             fault: fault.or((!has_modulus).then_some(Fault::Nan)),
             waiting: match *reading {
                 Reading::Waiting(reason) | Reading::Passive(_, reason) => Some(reason),
-                _ => (!tip_fits).then_some(reason::OTHER_BODY),
+                _ if tip_fits => None,
+                _ if self.has_tool() => Some(reason::OTHER_BODY),
+                _ => Some(reason::ONLY_TOOLS),
             },
             switched_off: !settings.enabled,
             body_replaced: moment.body_replaced,

@@ -91,22 +91,27 @@ impl Side {
             && !self.is_outside(tool, &pose.moved(-self.carried))
     }
 
-    /// Whether a tool is clear of the body at rest: no point in it, nor it in the body. One without
-    /// another side always is: there is one way out of it.
+    /// Whether a tool is clear of the body at rest.
     pub(super) fn is_outside(&self, tool: &Tool, pose: &Pose) -> bool {
-        if tool.is_endless() {
-            return true;
-        }
-        let mut overlaps = false;
-        self.surface.tree().visit(
-            |middle, radius| tool.least_distance(pose.to_tool(middle)) <= radius,
-            |point| {
-                let place = self.surface.points()[point as usize].position;
-                let distance = tool.distance(pose.to_tool(place)).0;
-                overlaps = overlaps || distance < -IN_TOOL * tool.reach();
-            },
-        );
-        let middle = pose.position + pose.rotation * tool.middle();
-        !overlaps && !closest_point(self.surface.body(), middle, 0).1
+        is_outside(&self.surface, tool, pose)
     }
+}
+
+/// Whether a tool is clear of a body at rest: no point in it, nor it in the body. One without another
+/// side always is: there is one way out of it.
+pub(crate) fn is_outside(surface: &ToolSurface, tool: &Tool, pose: &Pose) -> bool {
+    if tool.is_endless() {
+        return true;
+    }
+    let mut overlaps = false;
+    surface.tree().visit(
+        |middle, radius| tool.least_distance(pose.to_tool(middle)) <= radius,
+        |point| {
+            let place = surface.points()[point as usize].position;
+            let distance = tool.distance(pose.to_tool(place)).0;
+            overlaps = overlaps || distance < -IN_TOOL * tool.reach();
+        },
+    );
+    let middle = pose.position + pose.rotation * tool.middle();
+    !overlaps && !closest_point(surface.body(), middle, 0).1
 }

@@ -1,5 +1,7 @@
 //! A body that nobody holds, on a floor: what its ticks take, faults, and how it is laid down.
 
+mod among;
+
 use std::sync::Arc;
 
 use crate::counting::counted;
@@ -8,6 +10,7 @@ use crate::tools_on_fingers::{ball, surface};
 use glam::{DMat3, DVec3};
 use palpate_servo::body::surface::Body;
 use palpate_servo::device::{Fault, Reading};
+use palpate_servo::pile::laid::Lying;
 use palpate_servo::rest::free_body::FreeBody;
 use palpate_servo::rest::placement::Placement;
 use palpate_servo::rest::prop::{Prop, Support};
@@ -19,19 +22,23 @@ use palpate_servo::tool::shape::{Pose, Tool};
 const MASS: f64 = 0.1;
 const GRAVITY: f64 = 9.81;
 
+fn free() -> FreeBody {
+    FreeBody {
+        mass: MASS,
+        centre: DVec3::splat(0.025),
+        inertia: DMat3::from_diagonal(DVec3::splat(MASS * 0.05 * 0.05 / 6.0)),
+        drag_time: 0.05,
+    }
+}
+
 /// The body on a floor at its foot.
-fn prop(body: &Arc<Body>) -> Box<Prop> {
+fn prop(body: &Arc<Body>) -> Box<Lying> {
     let floor = Tool::endless(1e-3).expect("sound");
     let mut collider = Collider::new(surface(body), floor);
     collider.set_friction(Friction::of(0.5));
-    Box::new(Prop {
+    Box::new(Lying::Alone(Prop {
         body: body.clone(),
-        free: FreeBody {
-            mass: MASS,
-            centre: DVec3::splat(0.025),
-            inertia: DMat3::from_diagonal(DVec3::splat(MASS * 0.05 * 0.05 / 6.0)),
-            drag_time: 0.05,
-        },
+        free: free(),
         placement: Placement::default(),
         gravity: DVec3::NEG_Z * GRAVITY,
         supports: vec![Support {
@@ -41,7 +48,7 @@ fn prop(body: &Arc<Body>) -> Box<Prop> {
                 rotation: DMat3::IDENTITY,
             },
         }],
-    })
+    }))
 }
 
 /// A cube that was laid down; some fingers have a ball.

@@ -1,0 +1,37 @@
+//! What a tick of a pile may take.
+
+use crate::algebra::{MOST_IN_TICK, MOST_POINTS};
+
+/// Bounds on the work of a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pace {
+    /// Contact points that are looked at of each body, and contacts that may press.
+    pub room: usize,
+    /// Points that may come to be looked at for contacts that do not press yet.
+    pub entering: usize,
+    /// Turns of pushes and forces aside.
+    pub turns: usize,
+    /// Sweeps of forces aside in each.
+    pub sweeps: usize,
+    /// Multiplications of a solve for the pushes, about.
+    pub work: usize,
+}
+
+impl Pace {
+    /// Without a clock: all that it takes.
+    pub const UNHURRIED: Self = Self {
+        room: MOST_POINTS,
+        entering: usize::MAX,
+        turns: 6,
+        sweeps: 8,
+        work: usize::MAX / 4,
+    };
+    /// What a tick of 1 kHz has time for; what it leaves the next ones do.
+    pub const IN_TICK: Self = Self {
+        room: MOST_IN_TICK,
+        entering: 24,
+        turns: 1,
+        sweeps: 4,
+        work: 500_000,
+    };
+}

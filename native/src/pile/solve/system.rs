@@ -1,0 +1,266 @@
+//! How all contacts give way to forces at each other, by all bodies that they share.
+//!
+//! Unknowns are the pushes of all contacts, then two forces aside of each that rubs; one without
+//! friction has no more. What moves a body as a whole is of rank six: it is added as six products.
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
+
+use super::products::{add_six, seen_by};
+use crate::algebra::room;
+use crate::contact::mobility::Mobility;
+use crate::pile::between::Three;
+use crate::pile::contact::{Contact, MOST_SHARES};
+use crate::pile::member::Member;
+
+/// A contact as one body has it.
+#[derive(Debug, Clone)]
+struct Side {
+    contact: usize,
+    /// Which of the slots of the body that carry forces carry its own.
+    slots: Range<usize>,
+    /// Takes the contact's directions, out and two across, to those of the body, as its force acts there.
+    ways: DMat3,
+    /// The same turned over, a part of each direction after the other.
+    along: Three,
+    /// Where the force acts on the body as a whole, m.
+    place: DVec3,
+    /// The last of the slots.
+    last: usize,
+}
+
+/// Displacements along the unknowns under forces along these: `at_rest + matrix force`. Keeps its memory.
+#[derive(Debug, Clone, Default)]
+pub(super) struct System {
+    /// Row by row, m/N. A row holds the columns up to its own, and one of a force aside all of these.
+    matrix: Vec<f64>,
+    /// Of no force at all, with what weight does in this tick, m.
+    pub at_rest: Vec<f64>,
+    /// Of each contact: out, and two directions across, in the world.
+    pub directions: Vec<DMat3>,
+    /// The contacts that rub, in the order of their unknowns.
+    pub rubs: Vec<usize>,
+    /// Of each contact its first unknown aside; none of one that does not rub.
+    aside: Vec<Option<usize>>,
+    /// By how much each contact gives way besides, m/N.
+    pub springs: Vec<f64>,
+    sides: Vec<Side>,
+    /// Slots of a body that carry forces, and their shares.
+    shares: Vec<(usize, f64)>,
+    sum: Vec<Three>,
+    moved: Vec<Three>,
+    /// Unit forces along all unknowns as wrenches on a body, an entry of these after the other.
+    wrenches: Vec<f64>,
+}
+
+impl System {
+    /// Sets up that of the contacts that are `chosen`, and those of them that rub; the gaps and places
+    /// of contacts are those under their forces now. `away` are the contacts' ways now: gap, and from
+    /// where they stuck.
+    pub(super) fn set_up(
+        &mut self,
+        contacts: &[Contact],
+        chosen: &[usize],
+        members: &[Member],
+        (away, rubs): (&[DVec3], impl Fn(usize) -> bool),
+    ) {
+        let pushes = chosen.len();
+        self.rubs.clear();
+        self.rubs.extend((0..pushes).filter(|&place| rubs(place)));
+        self.aside.clear();
+        self.aside.resize(pushes, None);
+        for (k, &place) in self.rubs.iter().enumerate() {
+            self.aside[place] = Some(pushes + 2 * k);
+        }
+        let count = pushes + 2 * self.rubs.len();
+        self.matrix
+            .resize((count * count).max(self.matrix.len()), 0.0);
+        for row in 0..count {
+            self.matrix[row * count..][..=row].fill(0.0);
+        }
+        self.at_rest.clear();
+        self.at_rest.extend(away.iter().map(|way| way.x));
+        let across = self
+            .rubs
+            .iter()
+            .flat_map(|&place| [away[place].y, away[place].z]);
+        self.at_rest.extend(across);
+        self.directions.clear();
+        self.directions.extend(chosen.iter().map(|&number| {
+            let normal = contacts[number].normal;
+            let (first, second) = normal.any_orthonormal_pair();
+            DMat3::from_cols(normal, first, second)
+        }));
+        for (body, member) in members.iter().enumerate() {
+            self.find_sides(contacts, chosen, body, member);
+            self.give_way(member);
+            self.add_motion(member.mobility.as_ref());
+            self.add_rest(member);
+        }
+        mirror(&mut self.matrix, pushes, count);
+    }
+
+    /// Has each contact give way by a share more of how far it does along its push.
+    pub(super) fn add_springs(&mut self, shares: &[f64]) {
+        let count = self.at_rest.len();
+        self.springs.clear();
+        for (contact, share) in shares.iter().enumerate() {
+            let own = &mut self.matrix[contact * count + contact];
+            self.springs.push(share * *own);
+            *own += share * *own;
+        }
+    }
+
+    /// Takes all memory that it ever needs for so many contacts.
+    pub(super) fn reserve(&mut self, contacts: usize) {
+        let unknowns = 3 * contacts;
+        self.matrix = room(unknowns * unknowns);
+        self.wrenches = room(6 * unknowns);
+        self.at_rest.reserve(unknowns);
+        self.directions.reserve(contacts);
+        self.rubs.reserve(contacts);
+        self.aside.reserve(contacts);
+        self.springs.reserve(contacts);
+        self.sides.reserve(contacts);
+        self.shares.reserve(MOST_SHARES * contacts);
+        self.sum.reserve(contacts);
+        self.moved.reserve(contacts);
+    }
+
+    fn find_sides(&mut self, contacts: &[Contact], chosen: &[usize], body: usize, member: &Member) {
+        self.sides.clear();
+        self.shares.clear();
+        let points = member.surface.points();
+        let turn = DMat3::from_quat(member.placement.rotation.inverse());
+        for (contact, &number) in chosen.iter().enumerate() {
+            let sign = contacts[number].sign_on(body);
+            if sign == 0.0 {
+                continue;
+            }
+            let (first, mut place, mut last) = (self.shares.len(), DVec3::ZERO, 0);
+            for &(point, share) in contacts[number].shares_on(body) {
+                place += points[point as usize].position * share;
+                self.shares.push((member.slot(point), share));
+                last = last.max(member.slot(point));
+            }
+            let ways = turn * self.directions[contact] * sign;
+            let mut along = [0.0; 12];
+            for axis in 0..3 {
+                let parts = ways.row(axis).to_array();
+                along[4 * axis..][..3].copy_from_slice(&parts);
+            }
+            self.sides.push(Side {
+                contact,
+                slots: first..self.shares.len(),
+                ways,
+                along,
+                place,
+                last,
+            });
+        }
+        // What one moves is then asked of slots up to its own last: half of them, all in all.
+        self.sides
+            .sort_unstable_by_key(|side| (side.last, side.contact));
+    }
+
+    /// The unknowns of a side and their ways on the body.
+    #[inline]
+    fn unknowns(&self, side: &Side) -> ([(usize, DVec3); 3], usize) {
+        let [out, x, y] = [side.ways.x_axis, side.ways.y_axis, side.ways.z_axis];
+        match self.aside[side.contact] {
+            Some(aside) => ([(side.contact, out), (aside, x), (aside + 1, y)], 3),
+            None => ([(side.contact, out); 3], 1),
+        }
+    }
+
+    /// Adds how a body's surface gives way.
+    fn give_way(&mut self, member: &Member) {
+        let between = member.between();
+        let (mut sum, mut moved) = (
+            std::mem::take(&mut self.sum),
+            std::mem::take(&mut self.moved),
+        );
+        let count = self.at_rest.len();
+        for number in 0..self.sides.len() {
+            let loaded = &self.sides[number];
+            let (own, owns) = self.unknowns(loaded);
+            let ways = own.map(|(_, way)| way / member.young_modulus);
+            let shares = &self.shares[loaded.slots.clone()];
+            between.move_by(shares, &ways[..owns], loaded.last + 1, &mut sum, &mut moved);
+            for (other, seen) in self.sides[..=number].iter().enumerate() {
+                let by = seen_by(&self.shares[seen.slots.clone()], &moved, &seen.along);
+                let (theirs, others) = self.unknowns(seen);
+                for (way, &(row, _)) in own[..owns].iter().enumerate() {
+                    // Of the pairs of a contact with itself each once.
+                    let last = if other == number { way + 1 } else { others };
+                    for (l, &(column, _)) in theirs[..last].iter().enumerate() {
+                        let (row, column) = (row.max(column), row.min(column));
+                        self.matrix[row * count + column] += by[4 * way + l];
+                    }
+                }
+            }
+        }
+        (self.sum, self.moved) = (sum, moved);
+    }
+
+    /// Adds how a body moves as a whole.
+    fn add_motion(&mut self, mobility: Option<&Mobility>) {
+        let Some(mobility) = mobility else { return };
+        let count = self.at_rest.len();
+        self.wrenches.clear();
+        self.wrenches.resize(6 * count, 0.0);
+        for number in 0..self.sides.len() {
+            let side = &self.sides[number];
+            let (own, owns) = self.unknowns(side);
+            let arm = side.place - mobility.centre;
+            for &(unknown, way) in &own[..owns] {
+                let torque = arm.cross(way);
+                for axis in 0..3 {
+                    self.wrenches[axis * count + unknown] = way[axis];
+                    self.wrenches[(3 + axis) * count + unknown] = torque[axis];
+                }
+            }
+        }
+        for side in &self.sides {
+            let (own, owns) = self.unknowns(side);
+            let arm = side.place - mobility.centre;
+            for &(unknown, way) in &own[..owns] {
+                let (shift, turn) = (way * mobility.shift, mobility.turn * arm.cross(way));
+                let moves = [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z];
+                let row = &mut self.matrix[unknown * count..][..=unknown];
+                add_six(&self.wrenches, count, &moves, row);
+            }
+        }
+    }
+
+    /// Adds where the contacts of a body are without forces.
+    fn add_rest(&mut self, member: &Member) {
+        let drift = (member.mobility).map_or(DVec3::ZERO, |mobility| mobility.drift);
+        for side in &self.sides {
+            let elastic: DVec3 = (self.shares[side.slots.clone()].iter())
+                .map(|&(slot, share)| member.slots()[slot].moved * share)
+                .sum();
+            let (own, owns) = self.unknowns(side);
+            for &(unknown, way) in &own[..owns] {
+                self.at_rest[unknown] += way.dot(drift - elastic);
+            }
+        }
+    }
+
+    /// A row of the matrix: up to its own column, or that of the last force aside.
+    #[inline]
+    pub(super) fn row(&self, number: usize) -> &[f64] {
+        let count = self.at_rest.len();
+        &self.matrix[number * count..][..count]
+    }
+}
+
+/// Copies what is below the diagonal of the rows and columns from `first` on to above it.
+fn mirror(matrix: &mut [f64], first: usize, count: usize) {
+    for row in first..count {
+        for column in first..row {
+            matrix[column * count + row] = matrix[row * count + column];
+        }
+    }
+}
