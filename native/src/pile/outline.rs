@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::body::closest::closest_point;
+use crate::body::face::closest_on_face;
 use crate::body::surface::Body;
 use crate::body::tree::Closest;
 
@@ -36,9 +37,7 @@ pub(super) fn met(
     let (closest, _) = closest_point(body, place, triangle);
     let found = towards(body, &closest, facing).or_else(|| {
         // At an edge the nearest triangle may be the one around the corner.
-        let is_wanted = |face: &crate::body::face::Face, _: f64| face.normal.dot(facing) < TOWARDS;
-        let reach = closest.distance + beside;
-        let other = (body.tree()).find_within(body.faces(), place, reach, is_wanted)?;
+        let other = nearest_towards(body, place, facing, closest.distance + beside)?;
         towards(body, &other, facing)
     });
     let (closest, normal) = found?;
@@ -61,10 +60,88 @@ pub(super) fn met(
     })
 }
 
+/// The closest place of the triangles that look towards the other, nearer than `reach` m: of any that
+/// near, how far the place is beyond an edge would jump from tick to tick.
+fn nearest_towards(body: &Body, place: DVec3, facing: DVec3, mut reach: f64) -> Option<Closest> {
+    let mut nearest = None;
+    let any = |_| true;
+    body.tree().visit_within(place, reach, any, |triangle| {
+        let face = body.face(triangle);
+        if face.normal.dot(facing) < TOWARDS {
+            let (alpha, point) = closest_on_face(face, place);
+            let distance = point.distance(place);
+            if distance < reach {
+                reach = distance;
+                nearest = Some(Closest {
+                    triangle,
+                    alpha,
+                    point,
+                    distance,
+                });
+            }
+        }
+        reach
+    });
+    nearest
+}
+
 /// The closest place and the surface's normal there, if it looks towards the other.
 fn towards(body: &Body, closest: &Closest, facing: DVec3) -> Option<(Closest, DVec3)> {
     let normals = body.corner_normals(closest.triangle);
     let mean: DVec3 = (0..3).map(|c| normals[c] * closest.alpha[c]).sum();
     let normal = mean.try_normalize()?;
     (normal.dot(facing) < TOWARDS).then_some((*closest, normal))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use glam::DMat3;
+
+    use super::*;
+
+    const CELLS: i32 = 6;
+
+    /// A cube of one metre about the origin, of many triangles a side.
+    fn cube() -> Body {
+        let (mut numbers, mut nodes, mut triangles) = (HashMap::new(), Vec::new(), Vec::new());
+        let mut number = |at: [i32; 3]| {
+            *numbers.entry(at).or_insert_with(|| {
+                nodes.push(DVec3::from_array(at.map(f64::from)) / f64::from(CELLS) - 0.5);
+                nodes.len() as u32 - 1
+            })
+        };
+        for cell in 0..6 * CELLS * CELLS {
+            let (i, j, face) = (cell % CELLS, cell / CELLS % CELLS, cell / CELLS / CELLS);
+            let (axis, side) = ((face / 2) as usize, face % 2);
+            let [a, mut b, c, mut d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| {
+                let mut at = [side * CELLS; 3];
+                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (i + x, j + y);
+                number(at)
+            });
+            if side == 0 {
+                (b, d) = (d, b);
+            }
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        let blocks = vec![DMat3::IDENTITY; nodes.len()];
+        Body::new(nodes, triangles, blocks).expect("sound")
+    }
+
+    /// Where another face is nearer, a place beneath the top is met as all others: on it.
+    #[test]
+    fn a_place_fades_by_how_far_it_is_beyond_the_edge_alone() {
+        let (cube, beside) = (cube(), 0.1);
+        for step in 0..200 {
+            let x = -0.45 + 0.0045 * f64::from(step);
+            let depth = 0.01 + 0.0004 * f64::from(step);
+            for (beyond, presence) in [(-0.005, 1.0), (0.005, 0.95), (0.05, 0.5)] {
+                let place = DVec3::new(x, 0.5 + beyond, 0.5 - depth);
+                let met = met(&cube, place, DVec3::NEG_Z, 0, beside).expect("near");
+                assert!((met.gap + depth).abs() < 1e-12, "{met:?} at {place}");
+                assert!((met.presence - presence).abs() < 1e-9, "{met:?} at {place}");
+            }
+        }
+    }
 }
