@@ -7,10 +7,13 @@ Blender, all in one run: a live layer whose vertices all move under a fingertip,
 written anew, and a step of a sculpting stroke. Milliseconds of the processor, of all threads,
 medians: what hands the step over, Blender's evaluation, and its drawing (in software here, and so
 most of it). The layer's own share has the shape in it, from the body's nodes to the vertices, and
-what keeps these out of the tool; the key's places are known.
+what keeps these out of the tool; the key's places are known. Beside, megabytes of memory that the
+system hands out page by page: of 504,000 vertices the layer's attribute and the moved places go
+into such memory anew in each step, for Blender still shows the last ones; a shape key's do not.
 
 Claims: the layer's own share within 10 ms for all, and evaluating it at most `MOST_OF_KEY` times
-the shape key.
+the shape key, or `MOST_WHEN_FRESH` times where that needs fresh memory, and `NODES` ms more: so
+much the nodes cost with the smallest mesh.
 """
 
 from __future__ import annotations
@@ -27,7 +30,9 @@ from windowed_blender import WindowedBlender, package_of, program_of  # noqa: E4
 
 SCENARIO = "redraw_in_window::a_step_is_drawn"
 COUNTS = ("3000", "126000", "504000")
-MOST_OWN, MOST_OF_KEY = 10.0, 1.5
+MOST_OWN, MOST_OF_KEY, MOST_WHEN_FRESH, NODES = 10.0, 1.5, 2.0, 0.5
+# Below so much only what is small is written anew.
+FRESH_MEGABYTES = 1.0
 LIMIT_SECONDS = 1200.0
 
 
@@ -60,12 +65,17 @@ def main() -> int:
 
 def _table(figures: dict[str, dict[str, float]]) -> bool:
     """Print the rows of one count; whether the claims hold."""
-    print(f"{figures['vertices']:,} vertices; ms    own  evaluation  drawing")
+    print(f"{figures['vertices']:,} vertices; ms    own  evaluation  drawing   MB fresh for these")
     for name in ("layer", "shape key", "elastic grab"):
         one = figures[name]
-        print(f"  {name:<18}{one['own']:9.1f}{one['evaluation']:12.1f}{one['drawing']:9.1f}")
+        print(
+            f"  {name:<18}{one['own']:9.1f}{one['evaluation']:12.1f}{one['drawing']:9.1f}"
+            f"{one['fresh for own']:12.1f}{one['fresh for evaluation']:6.1f}"
+        )
     layer, key = figures["layer"], figures["shape key"]
-    return layer["own"] <= MOST_OWN and layer["evaluation"] <= MOST_OF_KEY * key["evaluation"]
+    is_fresh = layer["fresh for evaluation"] > FRESH_MEGABYTES
+    most = MOST_WHEN_FRESH if is_fresh else MOST_OF_KEY
+    return layer["own"] <= MOST_OWN and layer["evaluation"] <= most * key["evaluation"] + NODES
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
 """Played in the windowed Blender by `benchmarks/shape/redraw.py`, with vertex counts.
 
 Milliseconds of the processor, of all threads, medians: of what hands a step over (own), of
-evaluating the mesh, and of drawing it. Drawing in software goes on in threads of its own after
-Blender has asked for it: each step begins when these are done.
+evaluating the mesh, and of drawing it; megabytes of memory that the system hands out page by page
+for the first two. Drawing in software goes on in threads of its own after Blender has asked for it:
+each step begins when these are done.
 """
 
 from __future__ import annotations
 
+import resource
 import time
 from collections.abc import Callable
 
@@ -150,19 +152,35 @@ def _grabbed(stage: Stage) -> dict[str, float]:
         bpy.ops.object.mode_set(mode="OBJECT")
     if np.array_equal(_places(), before):
         raise RuntimeError("the stroke moved nothing")
-    return {"own": 1e3 * own, "evaluation": 0.0, "drawing": 1e3 * drawing}
+    return {
+        "own": 1e3 * own,
+        "evaluation": 0.0,
+        "drawing": 1e3 * drawing,
+        "fresh for own": 0.0,
+        "fresh for evaluation": 0.0,
+    }
 
 
 def _steps(stage: Stage, step: Step) -> dict[str, float]:
-    found = []
+    found, handed = [], []
     with stage.view():
         _draw()
         for number in range(STEPS):
+            before = _fresh_memory()
             own = _cost(lambda number=number: step(number))
+            between = _fresh_memory()
             evaluation = _cost(bpy.context.view_layer.update)
+            handed.append(np.diff([before, between, _fresh_memory()]))
             found.append((own, evaluation, _cost(_draw)))
     medians = 1e3 * np.median(found, axis=0)
-    return dict(zip(("own", "evaluation", "drawing"), medians.tolist(), strict=True))
+    figures = dict(zip(("own", "evaluation", "drawing"), medians.tolist(), strict=True))
+    fresh = np.median(handed, axis=0).tolist()
+    return figures | dict(zip(("fresh for own", "fresh for evaluation"), fresh, strict=True))
+
+
+def _fresh_memory() -> float:
+    """Megabytes that the system has handed to this process page by page."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt * resource.getpagesize() / 1e6
 
 
 def _places() -> NDArray[np.float32]:
