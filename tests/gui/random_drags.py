@@ -24,6 +24,7 @@ from bl_ext.user_default.palpate.operators.layer import layers
 from bl_ext.user_default.palpate.operators.scene.drawn_surface import metres_per_unit
 from bl_ext.user_default.palpate.operators.scene.viewport import Viewport, under_pointer
 from bl_ext.user_default.palpate.operators.stroke import stroke_operator
+from bl_ext.user_default.palpate.operators.stroke.answer import deepest
 from bl_ext.user_default.palpate.operators.stroke.stroke_size import radius_for
 
 TOOL = "palpate.tool"
@@ -33,8 +34,9 @@ DRAG_PIXELS = 40.0
 BESIDE_EDGE = 20
 # Of a button's radius; the strip belongs to the gizmo, too.
 STRIP = 1.6
-# Of the way that the pointer was dragged.
-LEAST_PRESSED = 0.4
+# Of the way that the pointer was dragged; and where the stroke says that it goes no deeper, as on
+# an ear that is thinner than the drag is long.
+LEAST_PRESSED, LEAST_AT_END = 0.4, 0.2
 # Drags after which the object is looked at from elsewhere.
 LOOKS_FROM = 5
 
@@ -64,7 +66,9 @@ class Drag:
     def hit(self) -> bool:
         """Whether the surface was pressed where the cursor was, as one would see it."""
         most = self.moved if self.off <= self.radius else self.pressed
-        return max(most, self.pressed) >= LEAST_PRESSED * DRAG_PIXELS
+        ends = deepest.ENDS in self.said or deepest.DEEPEST in self.said
+        least = LEAST_AT_END if ends else LEAST_PRESSED
+        return max(most, self.pressed) >= least * DRAG_PIXELS
 
     @property
     def elsewhere(self) -> bool:
