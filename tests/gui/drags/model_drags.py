@@ -78,8 +78,11 @@ def _only_model(stage: Stage, path: Path) -> Wait:
         thing for thing in bpy.context.scene.objects if thing.type == "MESH" and thing.visible_get()
     ]
     assert meshes, f"{path.name} has no mesh"
-    meshes = [thing for thing in meshes if thing.palpate.body_key] or meshes
-    largest = max(meshes, key=lambda thing: np.prod(np.maximum(thing.dimensions, 1e-6)))
+    meshes.sort(key=lambda thing: np.prod(np.maximum(thing.dimensions, 1e-6)))
+    largest = ([thing for thing in meshes if thing.palpate.body_key] or meshes)[-1]
+    # A backdrop hides what stands before it from three sides.
+    for other in meshes[meshes.index(largest) + 1 :]:
+        other.hide_set(True)
     for other in bpy.context.scene.objects:
         other.select_set(other == largest)
     bpy.context.view_layer.objects.active = largest
