@@ -87,6 +87,7 @@ def servo_costs(body: SoftBody, friction: float, goals: list[Pose]) -> np.ndarra
 def drawn(rows: list[tuple[int, float, int, float]], file: Path) -> None:
     """Picture of bodies, friction, contacts and median times, ms."""
     import matplotlib.pyplot as plt  # With --picture alone.
+    from matplotlib.ticker import NullFormatter, ScalarFormatter
 
     figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.4), sharey=True)
     for friction in FRICTIONS:
@@ -94,12 +95,16 @@ def drawn(rows: list[tuple[int, float, int, float]], file: Path) -> None:
         label = f"friction {friction:g}" if friction else "no friction"
         for axis, place in zip(axes, (0, 2), strict=True):
             axis.loglog([row[place] for row in own], [row[3] for row in own], "o-", label=label)
-    for axis, name in zip(axes, ("bodies", "contacts that press"), strict=True):
+    for axis, place, name in zip(axes, (0, 2), ("bodies", "contacts that press"), strict=True):
+        axis.set_xticks(sorted({row[place] for row in rows if row[1] == FRICTIONS[0]}))
+        axis.xaxis.set_major_formatter(ScalarFormatter())
+        axis.yaxis.set_major_formatter(ScalarFormatter())
+        axis.xaxis.set_minor_formatter(NullFormatter())
         axis.axhline(FRAME, color="0.6", lw=1.0, ls="--")
         axis.set_xlabel(name)
         axis.grid(alpha=0.3, which="both")
     axes[0].text(2.0, 1.08 * FRAME, "a frame at 60 Hz", color="0.4", fontsize=8)
-    axes[0].set_ylabel("ms a tick, median")
+    axes[0].set_ylabel("ms a tick, median, processor's")
     axes[1].legend(frameon=False)
     figure.tight_layout()
     figure.savefig(file, dpi=110)
