@@ -172,6 +172,9 @@ def _look_at(path: str, *, even_if_taken: bool) -> None:
         address_of(path)
         return
     if sys.platform == "win32":
+        # It would open, and then know nothing of a line.
+        if os.path.isfile(path):  # noqa: PTH113 - a Path would take part of a port's name away
+            raise PortError(path, REASONS[errno.ENOTTY])
         if even_if_taken:  # Else it is opened next; twice in a row is too much for some drivers.
             _open_once(path)
         return

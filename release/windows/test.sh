@@ -41,5 +41,6 @@ mkdir -p "$packages/palpate-0.dist-info" "$root/windows/checkout"
 printf 'Metadata-Version: 2.1\nName: palpate\nVersion: 0\n' >"$packages/palpate-0.dist-info/METADATA"
 ln -sfn "$PWD" "$root/windows/checkout/palpate"
 echo 'Z:\windows\checkout' >"$packages/palpate.pth"
-"$enter" "$root" wine "/windows/$(basename "$home")/python.exe" -m pytest -q -p no:cacheprovider \
+# Before others, or devices and servos wait for each other longer than either allows.
+nice -n -15 "$enter" "$root" wine "/windows/$(basename "$home")/python.exe" -m pytest -q -p no:cacheprovider \
     --timeout 900 -rs "$@"

@@ -34,7 +34,7 @@ def main() -> int:
     import numpy as np
 
     try:
-        _load_openmp()
+        load_openmp()
         import coacd
     except OSError as problem:
         sys.stderr.write(f"{problem}\n")
@@ -59,7 +59,7 @@ def main() -> int:
     return 0
 
 
-def _load_openmp() -> None:
+def load_openmp() -> None:
     """On Windows: load the servo's, so that CoACD's library need not find Microsoft's."""
     if sys.platform == "win32":
         servo = importlib.util.find_spec("palpate_servo")

@@ -46,7 +46,6 @@ def test_a_device_answers_hello_as_often_as_it_is_asked(device):
         )
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="any file opens as a port there")
 def test_named_ports_are_asked_and_the_reasons_stand_beside_them(device, tmp_path, silent_port):
     nowhere, file = tmp_path / "nowhere", tmp_path / "file"
     file.touch()

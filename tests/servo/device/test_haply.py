@@ -80,6 +80,7 @@ def corners(degrees):
         )
 
 
+@pytest.mark.in_time
 def test_coarse_encoders_soften_the_coupling_unless_another_was_chosen(
     cube, eventually, press_into
 ):
@@ -109,6 +110,7 @@ def resting_stiffness(servo):
     return np.linalg.norm(after.output_force) / np.linalg.norm(after.probe - after.proxy)
 
 
+@pytest.mark.in_time
 @pytest.mark.parametrize("plane", PLANES)
 def test_the_force_felt_is_that_of_a_press_in_the_plane(loop, cube, plane, press, settled):
     device, servo = loop(plane)
@@ -247,6 +249,7 @@ def test_what_makes_no_sense_is_refused_before_any_port_is_opened(cube):
     assert not servo.running
 
 
+@pytest.mark.in_time
 def test_the_command_touches_with_a_2diy(baked_file, capsys):
     # The command puts the workspace's middle on the middle of the top.
     hand = SimulatedOptions(by=(0.0, -0.075, 0.0), approach=0.2, period=1.0)

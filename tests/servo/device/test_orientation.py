@@ -84,6 +84,7 @@ def turning(started, eventually):
     return start
 
 
+@pytest.mark.in_time
 def test_each_state_of_a_turning_device_has_its_orientation(turning, eventually):
     _, servo = turning(turning=30.0, turning_axis=(0.0, 1.0, 0.0), turning_period=1.0)
     degrees = []

@@ -22,6 +22,7 @@ def pressing(x, way):
     )
 
 
+@pytest.mark.in_time
 @pytest.mark.parametrize("suffix", ["csv", "npz"])
 def test_two_devices_press_and_are_recorded(baked_file, tmp_path, capsys, suffix):
     path = tmp_path / f"both.{suffix}"

@@ -72,6 +72,7 @@ def refused(capsys, *arguments):
     return error
 
 
+@pytest.mark.in_time
 def test_simulate_presses_from_above_and_reports(baked_file, capsys):
     assert main(["servo", baked_file, "--simulate", "--seconds", "4", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
@@ -191,6 +192,7 @@ def test_a_rate_or_material_out_of_range_is_an_error(baked_file, capsys, device)
     assert "modulus" in refused(capsys, baked_file, "--simulate", "--young", "-5")
 
 
+@pytest.mark.in_time
 def test_a_press_is_recorded_tick_by_tick(baked_file, capsys, tmp_path):
     path = tmp_path / "press.csv"
     arguments = ["servo", baked_file, "--simulate", "--seconds", "2.5", "--json"]

@@ -121,12 +121,16 @@ def test_a_clean_link_loses_nothing(loop, eventually):
     servo.stop()
     link, report = servo.counters()["link"], device.stop()
     assert [link[name] for name in ("duplicates", "out_of_order", "unknown", "oversize")] == [0] * 4
-    assert (link["lost"], link["crc_errors"], link["cobs_errors"]) == (0, 0, 0)
+    assert (link["crc_errors"], link["cobs_errors"]) == (0, 0)
+    # Those that the device itself let fall: a host that is held up does not read.
+    assert link["lost"] <= report["states_dropped"]
     assert [report[name] for name in ("lost", "duplicates", "out_of_order", "clamped")] == [0] * 4
     assert [report[name] for name in ("crc_errors", "malformed", "unknown")] == [0] * 3
     assert report["forces"] == link["forces"]
 
 
+# The guardian of a servo that is held up says zero, with a number 64 ahead of the last one.
+@pytest.mark.in_time
 def test_lost_frames_are_counted_at_both_ends(loop, eventually):
     device, servo = loop(loss=0.1)
     eventually(lambda: servo.counters()["link"]["lost"] > 50 and device.report()["lost"] > 50)
