@@ -86,6 +86,8 @@ def _only_model(stage: Stage, path: Path) -> Wait:
     for other in bpy.context.scene.objects:
         other.select_set(other == largest)
     bpy.context.view_layer.objects.active = largest
+    # Where the first stroke is taken back to.
+    bpy.ops.ed.undo_push(message="Only the model")
     # Without a graphics card these take much of a frame's time.
     space = stage.area.spaces.active
     space.overlay.show_floor = space.shading.show_cavity = False
