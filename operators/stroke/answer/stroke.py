@@ -9,6 +9,7 @@ from functools import cached_property
 import bpy
 import numpy as np
 
+from ....core.errors import PalpateError
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ....core.shape.felt import held_loads
@@ -94,14 +95,19 @@ class Stroke:
         # From below: what has been pushed through itself does not come back as it was.
         most = self._deepest(thickness).metres
         done = replace(asked, amount=min(asked.amount, most))
-        for _ in range(MOST_STEPS):
-            stroked = self._done(done, inward=True)
+        stroked = self._done(done, inward=True)
+        for _ in range(MOST_STEPS - 1):
             moved = self.drawn.node_displacements(stroked.displacements)
             share = thickness.gone(done.amount, moved) / most
             if done.amount == asked.amount or share >= ALMOST:
                 break
-            farther = done.amount / max(share, LEAST_GONE)
-            done = replace(asked, amount=min(asked.amount, farther))
+            amount = min(asked.amount, done.amount / max(share, LEAST_GONE))
+            try:
+                farther = self._done(replace(asked, amount=amount), inward=True)
+            except PalpateError:
+                # As far as it went, which is told by `ends`.
+                break
+            done, stroked = replace(asked, amount=amount), farther
         return (asked if done.amount == asked.amount else done), stroked
 
     @property

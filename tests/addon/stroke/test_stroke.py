@@ -175,14 +175,37 @@ def test_a_fingertip_is_not_swallowed(thing):
     assert np.abs(shift[top, :2].mean(axis=0)).max() < 0.001
 
 
-def test_a_limb_that_gives_way_as_a_whole_is_pushed_farther_than_its_fingertip(palpate):
-    """What is held by its foot bends: only what is pressed in beside that counts."""
+@pytest.fixture
+def bar(palpate):
+    """A soft bar that stands on its foot."""
     bar = cube(0.02)
     for vertex in bar.data.vertices:
         vertex.co.z *= 6.0
     assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    return bar
+
+
+def test_a_limb_that_gives_way_as_a_whole_is_pushed_farther_than_its_fingertip(bar):
+    """What is held by its foot bends: only what is pressed in beside that counts."""
     bpy.ops.palpate.stroke(place=(0.01, 0.0, 0.055), radius=0.006, motion="PUSH", depth=0.03)
     assert np.linalg.norm(moved(bar, "Press 1"), axis=1).max() > 0.02
+
+
+def test_a_push_stays_as_far_as_it_went_where_it_goes_no_farther(bar, monkeypatch):
+    """As on a bone in flesh: the first step goes in, the next one finds no rest."""
+    pushing, depths = part("operators.stroke.answer.pushing").Pushing, []
+    push = pushing.to
+
+    def goes_once(self, asked, young_modulus):
+        depths.append(asked.amount)
+        if asked.amount > depths[0]:
+            raise part("core.errors").PalpateError("no deeper")
+        return push(self, asked, young_modulus)
+
+    monkeypatch.setattr(pushing, "to", goes_once)
+    bpy.ops.palpate.stroke(place=(0.01, 0.0, 0.055), radius=0.006, motion="PUSH", depth=0.03)
+    assert depths[-1] > depths[0]
+    assert np.linalg.norm(moved(bar, "Press 1"), axis=1).max() > 0.5 * depths[0]
 
 
 @pytest.fixture
