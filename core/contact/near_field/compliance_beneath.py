@@ -34,6 +34,7 @@ from .regular_field import (
 )
 from .rim_field import with_rims
 from .solid_angle import sharpness, solid_angles
+from .surface_nodes import of_one_material
 
 # Points whose normals have a smaller product than the first are not of one surface, from the second
 # on they are wholly: H may reach around an edge, but not through a thin part.
@@ -186,6 +187,7 @@ def _corrections(
     points, field = near.points, near.field
     share = near.shares[i] * near.shares[j]
     share *= facing(points.normals[i], points.normals[j], SAME_SURFACE)
+    share *= of_one_material(near.softness[i], near.softness[j])
     counts = np.flatnonzero(share > 0.0)
     blocks = np.zeros((len(i), 3, 3))
     for first in range(0, len(counts), PAIRS_TOGETHER):

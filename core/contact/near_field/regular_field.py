@@ -27,7 +27,7 @@ from ...body.soft_body import SoftBody
 from ...stiffness.formulation import LINEAR, SMOOTHED
 from .far_side import FarSide, far_side
 from .half_space import surface_displacement
-from .surface_nodes import mean_edges, surface_softness
+from .surface_nodes import mean_edges, of_one_material, surface_evenness, surface_softness
 from .surface_shape import node_normals
 
 # Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
@@ -74,7 +74,7 @@ class RegularField:
     excess : float64 (s,), what finite elements add to the coupling of pushes with displacements
         aside, times the distance squared, m^3 / N at 1 Pa; negative where they fall short.
     softness : float64 (s,), 1 over the factor of Young's modulus around the node.
-    trusted : float64 (s,), 0 where nothing is known and plain finite elements stay, else 1.
+    trusted : float64 (s,), 0 where nothing is known and plain finite elements stay, up to 1.
     far : what lies across the body, where it is thin. What a force moves there is no part of
         ``regular`` and ``slope``.
     """
@@ -100,6 +100,7 @@ class RegularField:
         apart = np.linalg.norm(places[a] - places[b], axis=1)
         reach = 0.5 * (edges[a] + edges[b])
         alike = facing(normals[a], normals[b], SAME_SIDE)
+        alike *= of_one_material(softness[a], softness[b])
         ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (alike > 0))
         a, b, weight = a[ring], b[ring], alike[ring]
         beyond = pair_blocks(body, a, b) - half_space_between(body, places, normals, softness, a, b)
@@ -116,7 +117,8 @@ class RegularField:
         distance = np.linalg.norm(offsets, axis=1)
         beyond -= (excess[node] / distance**2)[:, None, None] * coupling
         regular, slope, known = _fitted(node, offsets, beyond, weight, edges)
-        trusted = (known & (body.free_index(mesh.surface_nodes) >= 0)).astype(np.float64)
+        trusted = surface_evenness(body)
+        trusted[~known | (body.free_index(mesh.surface_nodes) < 0)] = 0.0
         return cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
 
     def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -279,7 +281,7 @@ def half_space_between(
     """H between places a (k,) and b (k,), (k, 3, 3)."""
     normal = _unit_normals(normals[a] + normals[b])
     blocks = surface_displacement(places[a] - places[b], normal, body.poisson_ratio)
-    blocks *= (0.5 * (softness[a] + softness[b]))[:, None, None]
+    blocks *= np.sqrt(softness[a] * softness[b])[:, None, None]
     return blocks
 
 

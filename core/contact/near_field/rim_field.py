@@ -30,6 +30,7 @@ from .regular_field import (
     seen_across,
 )
 from .solid_angle import edge_shares, node_angles, sharpness
+from .surface_nodes import of_one_material
 from .surface_shape import node_areas
 
 
@@ -66,6 +67,7 @@ def _doubted(
     reach = 0.5 * (field.edges[a] + field.edges[b])
     apart = np.linalg.norm(places[a] - places[b], axis=1) / reach
     weight = np.clip((wholly - apart) / (wholly - never), 0.0, 1.0)
+    weight *= of_one_material(field.softness[a], field.softness[b])
     return a, b, weight * facing(field.normals[a], field.normals[b], SAME_SIDE)
 
 

@@ -13,6 +13,9 @@ use glam::{DMat3, DVec3};
 /// second on they are wholly.
 const SAME_SURFACE: [f64; 2] = [-0.5, 0.0];
 
+/// Moduli that differ by the first factor are of one material, by the second of two.
+const ONE_MATERIAL: [f64; 2] = [4.0, 40.0];
+
 /// How a surface gives way beyond what a half-space does, at one of its nodes.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NodeField {
@@ -100,7 +103,8 @@ impl NearField {
     pub(super) fn share(&self, p: u32, q: u32, normals: [DVec3; 2]) -> f64 {
         let [low, high] = SAME_SURFACE;
         let alike = ((normals[0].dot(normals[1]) - low) / (high - low)).clamp(0.0, 1.0);
-        self.points[p as usize].share * self.points[q as usize].share * alike
+        let [one, other] = [p, q].map(|k| &self.points[k as usize]);
+        one.share * other.share * alike * of_one_material(one.softness, other.softness)
     }
 
     /// What is added between two points, or to one and its own force, that energy is nowhere negative.
@@ -187,7 +191,7 @@ impl NearField {
         let nu = self.poisson_ratio;
         let inverse = offset.length_recip();
         let along = offset * inverse;
-        let scale = (1.0 + nu) / PI * inverse * (0.5 * (softness[0] + softness[1]));
+        let scale = (1.0 + nu) / PI * inverse * (softness[0] * softness[1]).sqrt();
         let coupling = 0.5 - nu + excess * inverse * inverse / scale;
         let column = |axis: usize| {
             let (e, n) = (along[axis], normal[axis]);
@@ -197,4 +201,14 @@ impl NearField {
         };
         DMat3::from_cols(column(0), column(1), column(2)) * scale
     }
+}
+
+/// How much two points are of one material, 0 to 1: across a bone's border in flesh there is no half-space.
+#[inline]
+fn of_one_material(one: f64, other: f64) -> f64 {
+    if one == other {
+        return 1.0;
+    }
+    let [alike, apart] = ONE_MATERIAL.map(f64::ln);
+    ((apart - (one / other).ln().abs()) / (apart - alike)).clamp(0.0, 1.0)
 }
