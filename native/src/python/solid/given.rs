@@ -15,7 +15,8 @@ use crate::solid::strained::{Springs, Term};
 
 pub(super) type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 pub(super) type Numbers<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
-pub(super) type Counts<'py> = PyReadonlyArray1<'py, i64>;
+/// Of 32 bits where numpy's own are: on Windows before its version 2, as in Blender 4.5 and 5.0.
+pub(super) type Counts<'py> = PyArrayLike1<'py, i64, AllowTypeChange>;
 /// Where the entries of each domain begin, their nodes and gradients; Lame's parameters times volumes.
 pub(super) type GivenTerm<'py> = (
     Counts<'py>,

@@ -6,6 +6,7 @@ from bodies.bare_body import bare_body, beam_mesh
 from referees.jumps import jump_left
 from scipy.spatial.transform import Rotation
 
+from palpate.core.compliance.elimination.cholesky import CholeskyFactor
 from palpate.core.errors import PalpateError
 from palpate.core.law.foam import Foam
 from palpate.core.law.of_material import LAWS
@@ -304,3 +305,17 @@ def test_small_bodies_get_more_steps_and_large_ones_a_lattice():
     assert [plan.steps for plan in plans[:2]] == [4, 3]
     assert [plan.lattice_nodes > 0 for plan in plans] == [False, False, False, True]
     assert all(plan.steps >= 1 for plan in plans)
+
+
+def test_numbers_of_32_bits_are_taken(monkeypatch):
+    """As numpy's are on Windows before its version 2, in Blender 4.5 and 5.0."""
+    solid = beam()
+    wanted = relaxed(solid, end_load(solid, 0.3), 3)
+    flat = CholeskyFactor.flat
+
+    def short(*arguments, **names):
+        parts = flat(*arguments, **names)
+        return tuple(part.astype(np.int32) if part.dtype.kind == "i" else part for part in parts)
+
+    monkeypatch.setattr(CholeskyFactor, "flat", short)
+    assert np.array_equal(relaxed(solid, end_load(solid, 0.3), 3), wanted)
