@@ -193,17 +193,17 @@ def test_a_limb_that_gives_way_as_a_whole_is_pushed_farther_than_its_fingertip(b
 
 def test_a_push_stays_as_far_as_it_went_where_it_goes_no_farther(bar, monkeypatch):
     """As on a bone in flesh: the first step goes in, the next one finds no rest."""
-    pushing, depths = part("operators.stroke.answer.pushing").Pushing, []
-    push = pushing.to
+    stroke, depths = part("operators.stroke.answer.stroke").Stroke, []
+    done = stroke._done
 
-    def goes_once(self, asked, young_modulus):
+    def goes_once(self, asked, *, inward):
         depths.append(asked.amount)
         if asked.amount > depths[0]:
             raise part("core.errors").PalpateError("no deeper")
-        return push(self, asked, young_modulus)
+        return done(self, asked, inward=inward)
 
-    monkeypatch.setattr(pushing, "to", goes_once)
-    bpy.ops.palpate.stroke(place=(0.01, 0.0, 0.055), radius=0.006, motion="PUSH", depth=0.03)
+    monkeypatch.setattr(stroke, "_done", goes_once)
+    bpy.ops.palpate.stroke(place=(0.01, 0.0, 0.045), radius=0.006, motion="PUSH", depth=0.03)
     assert depths[-1] > depths[0]
     assert np.linalg.norm(moved(bar, "Press 1"), axis=1).max() > 0.5 * depths[0]
 
