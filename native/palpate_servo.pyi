@@ -643,13 +643,6 @@ class Pile:
         Raises RuntimeError where a force is no number.
         """
 
-    def stay(self) -> None:
-        """A tick as long as friction can be found in, after which all bodies are back where they
-        were, and points stick where they came to.
-
-        Raises RuntimeError where a force is no number.
-        """
-
     def settle(self) -> None:
         """Go on until all rests.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -152,19 +152,9 @@ class Pile:
         PalpateError
             A force is no number.
         """
-        self._until_forces_stay(lambda: self.tick(INSTANT))
-        # What friction bore aside is found in ticks in which they would go on.
-        self._until_forces_stay(self._stay)
-        self._until_forces_stay(lambda: self.tick(INSTANT))
-
-    def _stay(self) -> None:
-        with rest_errors(ValueError, RuntimeError):
-            self._native.stay()
-
-    def _until_forces_stay(self, go: Callable[[], None]) -> None:
         before = np.inf
         for _ in range(MOST_INSTANTS):
-            go()
+            self.tick(INSTANT)
             now = float(np.abs(self._native.contacts()["force"]).sum())
             if abs(now - before) <= STAYS * now:
                 return

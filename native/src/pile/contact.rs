@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use crate::tool::shape::tilt::TiltLimit;
-
 /// Points of the other body that carry a contact's force at most.
 pub(super) const MOST_SHARES: usize = 16;
 
@@ -67,8 +65,6 @@ pub struct Contact {
     pub(super) triangle: u32,
     /// Out of the other, in the world.
     pub normal: DVec3,
-    /// What the normal of a rigid tool is held within, in the tool's frame.
-    pub(super) limit: Option<TiltLimit>,
     /// From the other, m.
     pub gap: f64,
     /// How much it is on the other, from 1 to 0 beyond an edge.
@@ -97,7 +93,6 @@ impl Contact {
             place: DVec3::ZERO,
             triangle: 0,
             normal: DVec3::ZERO,
-            limit: None,
             gap: f64::INFINITY,
             presence: 1.0,
             push: 0.0,

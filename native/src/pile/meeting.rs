@@ -9,7 +9,6 @@ use super::member::Member;
 use super::obstacle::{Around, Rigid};
 use super::outline::met;
 use super::shares::shares;
-use crate::tool::shape::tilt::TiltLimit;
 
 /// Points within so many distances between them are looked at.
 const MARGIN: f64 = 0.5;
@@ -144,7 +143,8 @@ impl Meeting {
             if is_known || !against.is_around(place, margin) {
                 return;
             }
-            let facing = against.placement.direction_to_body(member.facing(point));
+            let facing = member.placement.rotation * at.normal;
+            let facing = against.placement.direction_to_body(facing);
             if let Some(near) = met(against.body(), place, facing, triangle, beside) {
                 triangle = near.triangle;
                 if near.gap <= margin {
@@ -152,23 +152,6 @@ impl Meeting {
                 }
             }
         });
-    }
-}
-
-/// Holds pushes of tools near what their points face, as in a servo's tick: round a fingertip pressed
-/// deeper than its radius a body would else slide off.
-pub(super) fn limit(contacts: &mut [Contact], members: &[Member], around: &Around<'_>) {
-    for (against, rigid) in around.all().filter(|(_, rigid)| !rigid.tool.is_endless()) {
-        for (body, member) in members.iter().enumerate() {
-            let is_own = |contact: &Contact| contact.against == against && contact.body == body;
-            let own = contacts.iter().filter(|contact| is_own(contact));
-            let pushes =
-                own.map(|contact| (contact.normal * contact.push, member.facing(contact.point)));
-            let limit = TiltLimit::of(pushes, member.free.is_none());
-            let limit = limit.map(|limit| limit.seen_from(&rigid.pose.rotation));
-            let own = contacts.iter_mut().filter(|contact| is_own(contact));
-            own.for_each(|contact| contact.limit = limit);
-        }
     }
 }
 
@@ -183,16 +166,7 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_
                 return;
             };
             contact.place = pose.to_tool(place);
-            let free = tool.distance(contact.place);
-            let watched = WATCHED * member.surface.spacing();
-            // Which way a point would be pushed that is only watched is not asked.
-            let held = contact.limit.filter(|limit| {
-                contact.push > 0.0 || !limit.is_beyond(watched, free, contact.place, tool)
-            });
-            let (gap, normal) = held.map_or(free, |limit| {
-                let facing = pose.rotation.transpose() * member.facing(contact.point);
-                limit.hold(free, contact.place, facing, tool)
-            });
+            let (gap, normal) = tool.distance(contact.place);
             (contact.gap, contact.normal) = (gap, pose.rotation * normal);
         }
         Against::Body(number) => {
@@ -201,9 +175,9 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_
             let given: DVec3 = given
                 .map(|&(point, share)| other.moved(point) * share)
                 .sum();
-            let facing = other
-                .placement
-                .direction_to_body(member.facing(contact.point));
+            let at = &member.surface.points()[contact.point as usize];
+            let facing = member.placement.rotation * at.normal;
+            let facing = other.placement.direction_to_body(facing);
             contact.place = other.placement.place_to_body(place) - given;
             let beside = BESIDE * member.surface.spacing();
             match met(

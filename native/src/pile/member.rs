@@ -120,12 +120,6 @@ impl Member {
         self.placement.to_world(at + self.moved(point))
     }
 
-    /// Out of the body at a contact point at rest, in the world.
-    #[inline]
-    pub(super) fn facing(&self, point: u32) -> DVec3 {
-        self.placement.rotation * self.surface.points()[point as usize].normal
-    }
-
     /// Begins anew to say at which points to look.
     pub(super) fn begin_wanting(&mut self) {
         self.wanted.clear();

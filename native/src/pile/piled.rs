@@ -1,7 +1,7 @@
 //! Bodies that press each other, tick by tick.
 
 use super::contact::{Against, Contact};
-use super::meeting::{MOST_CONTACTS, Meeting, limit, look, rank, share_out};
+use super::meeting::{MOST_CONTACTS, Meeting, look, rank, share_out};
 use super::member::Member;
 use super::obstacle::{Around, Obstacle, Rigid};
 use super::solve::pace::Pace;
@@ -201,7 +201,6 @@ impl Pile {
 
     fn look(&mut self, fingers: &[Option<Rigid<'_>>]) {
         let around = around(fingers, &self.obstacles);
-        limit(&mut self.contacts, &self.members, &around);
         for contact in &mut self.contacts {
             look(contact, &self.members, &around);
         }
@@ -219,15 +218,6 @@ impl Pile {
                 }
             }
             member.give_way();
-        }
-    }
-
-    /// All points that press stick where they are now.
-    pub(super) fn stick(&mut self) {
-        self.displace();
-        self.look(&[]);
-        for contact in &mut self.contacts {
-            contact.anchor = (contact.push > 0.0).then_some(contact.place);
         }
     }
 

@@ -13,23 +13,6 @@ use crate::rest::settling::Settles;
 const LONGEST: f64 = 100.0;
 const LONGEST_RUBBING: f64 = 2.0;
 
-impl Pile {
-    /// A tick as long as friction can be found in, after which all are back where they were, and points
-    /// stick where they came to: what bears bodies that rest there is found, what friction bears aside, too.
-    ///
-    /// # Errors
-    /// [`Restless::NotANumber`].
-    pub fn stay(&mut self) -> Result<(), Restless> {
-        let placements: Vec<_> = self.members.iter().map(|one| one.placement).collect();
-        self.tick_with(&[], self.longest_tick())?;
-        for (member, placement) in self.members.iter_mut().zip(placements) {
-            member.placement = placement;
-        }
-        self.stick();
-        Ok(())
-    }
-}
-
 impl Settles for Pile {
     fn go(&mut self, dt: f64) -> Result<f64, Restless> {
         self.tick(dt)?;

@@ -184,11 +184,6 @@ impl Pile {
         self.inner.tick(dt).map_err(restless)
     }
 
-    fn stay(&mut self) -> PyResult<()> {
-        self.settling = None;
-        self.inner.stay().map_err(restless)
-    }
-
     fn settle(&mut self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| settle(&mut self.inner)).map_err(restless)
     }
