@@ -139,6 +139,12 @@ def row(name: str, feel: str, found: list[Books]) -> bool:
     """Prints a row; whether no more came out than claimed."""
     rounds = np.array([gain for one in found for gain in one.rounds])
     paths = np.array([one.path for one in found])
+    if not len(rounds):
+        print(
+            f"{name:<10} {feel:<14} {len(found):6} no round closed: ask for more --loops",
+            flush=True,
+        )
+        return False
     print(
         f"{name:<10} {feel:<14} {len(found):6} {len(rounds):7} {(rounds > MOST).mean():8.2%} "
         f"{(rounds > 0.01).mean():8.2%} {rounds.max():9.3%} {-rounds[rounds < 0].mean():8.1%}   "
