@@ -28,7 +28,7 @@ from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..rest.floor_options import add_floor
 from ..rest.laid_body import LaidBody, laid_body
-from ..rest.laid_scene import LaidScene, laid_scene
+from ..rest.laid_scene import laid_scene
 from ..scene.scene_file import is_scene
 from .from_above import highest_place, press_from_above, vector
 from .haply import add_haply_options, connect_haply
@@ -161,7 +161,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _laid(arguments: argparse.Namespace, fingers: int) -> LaidBody | LaidScene:
+def _laid(arguments: argparse.Namespace, fingers: int) -> LaidBody:
     if is_scene(arguments.body):
         return laid_scene(arguments, fingers)
     body = body_file.load(arguments.body)

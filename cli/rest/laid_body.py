@@ -12,25 +12,28 @@ from ...core.contact.tool.tools import Tool
 from ...core.rest.prop import WORLD, native_prop
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
-from ...core.servo.session import Body, Prop, Servo
+from ...core.servo.session import Body, Prop, PropAmong, Servo, native_tool
 from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 
 
 @dataclass(frozen=True)
 class LaidBody:
-    """A body for the servo: native, where its frame is in the world, and as one that nobody holds.
+    """A body for the servo: native, where its frame is in the world, as one that nobody holds or
+    that lies among others, and the tools that devices lead; without any, fingers are points.
 
-    A pinned one has no prop, and its frame is that of the world. Fingers are points.
+    A pinned one has no prop, and its frame is that of the world.
     """
 
     body: SoftBody
     native: Body
     placement: Pose
-    prop: Prop | None
+    prop: Prop | PropAmong | None
     tools: tuple[Tool, ...] = ()
 
     def equip(self, servo: Servo) -> None:
-        """Give each finger its tool: none has any."""
+        """Give each finger its tool."""
+        for finger, tool in enumerate(self.tools):
+            servo.set_tool(native_tool(self.body, self.native, tool), finger)
 
 
 def laid_body(

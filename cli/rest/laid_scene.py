@@ -3,41 +3,14 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from ...core.body.soft_body import SoftBody
-from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
-from ...core.servo.session import Body, PropAmong, native_tool
 from ..scene.scene_commands import refuse_options
 from ..scene.scene_file import read_scene
-
-if TYPE_CHECKING:
-    # Types only, absent at run time.
-    from ...core.contact.tool.pose import Pose
-    from ...core.servo.session import Servo
+from .laid_body import LaidBody
 
 
-@dataclass(frozen=True)
-class LaidScene:
-    """The first body of a scene at rest among the others: itself, native, where its frame is in the
-    world, as the servo has it, and the tools that devices lead.
-    """
-
-    body: SoftBody
-    native: Body
-    placement: Pose
-    prop: PropAmong
-    tools: tuple[Tool, ...]
-
-    def equip(self, servo: Servo) -> None:
-        """Give each finger its tool."""
-        for finger, tool in enumerate(self.tools):
-            servo.set_tool(native_tool(self.body, self.native, tool), finger)
-
-
-def laid_scene(arguments: argparse.Namespace, fingers: int) -> LaidScene:
+def laid_scene(arguments: argparse.Namespace, fingers: int) -> LaidBody:
     """The scene of a file at rest, for so many fingers, which lead its tools in their order.
 
     Raises
@@ -54,7 +27,8 @@ def laid_scene(arguments: argparse.Namespace, fingers: int) -> LaidScene:
             "press each other are pressed by tools, so give each device one in 'tools'"
         )
     pile = scene.untouched()
+    # What a servo does not take is refused before all comes to rest, which may take long.
     pile.laid()
     first = pile.settle()[0]
     tools = tuple(tool for tool, _ in scene.tools[:fingers])
-    return LaidScene(first.body, pile.native_body, first.placement, pile.laid(), tools)
+    return LaidBody(first.body, pile.native_body, first.placement, pile.laid(), tools)

@@ -14,7 +14,6 @@ from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.grip import MOST_GRIPS
 from ....core.rest.grip import Grip as Hold
-from ....core.rest.refusals import RestlessError, SwallowedError
 from ...lying.coming_down import Alone
 from ...lying.free_body import Lying
 from ...object.drawn_body import DrawnBody
@@ -51,6 +50,7 @@ class FreeHold:
     turn: Array
     free: Alone
     springs_back = True
+    restless, swallowed = SWINGS, SWALLOWS
 
     @classmethod
     def begin(
@@ -88,15 +88,6 @@ class FreeHold:
         ]
         self.free.lead([Pose.at(goal) for goal in np.concatenate(goals)])
         return asked
-
-    def refusal(self, problem: PalpateError) -> PalpateError:
-        """What is said where the body does not come to rest in the hand."""
-        match problem:
-            case SwallowedError():
-                return PalpateError(SWALLOWS)
-            case RestlessError():
-                return PalpateError(SWINGS)
-        return problem
 
     def parts(self, asked: Asked) -> int:
         """In how many parts it is carried, at most so far in each as it may go to come to rest."""

@@ -12,7 +12,6 @@ from ....core.contact.place import nearest_place
 from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
-from ....core.rest.refusals import RestlessError, SwallowedError
 from ....core.rest.rest import Rest
 from ...lying.coming_down import Alone
 from ...lying.free_body import Lying
@@ -36,6 +35,7 @@ class FreePush:
     rested: Lying
     free: Alone | FreePile
     springs_back = False
+    restless, swallowed = ROLLS, DEEPEST
 
     @classmethod
     def begin(
@@ -77,15 +77,6 @@ class FreePush:
             done = replace(asked, amount=deepest.metres)
         self.free.lead([self._goal(grip, done.amount) for grip in self.tips.places(done)])
         return done
-
-    def refusal(self, problem: PalpateError) -> PalpateError:
-        """What is said where the body does not come to rest under the fingertips."""
-        match problem:
-            case SwallowedError():
-                return PalpateError(DEEPEST)
-            case RestlessError():
-                return PalpateError(ROLLS)
-        return problem
 
     def parts(self, _asked: Asked) -> int:
         """In how many parts it goes in: a fingertip takes its time by itself."""

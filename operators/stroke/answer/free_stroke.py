@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ....core.errors import PalpateError
 from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
+from ....core.rest.refusals import RestlessError, SwallowedError
 from ...lying.before import Before
 from ...lying.coming_down import Alone, lying_bodies, show
 from ...lying.free_body import LANDING, Lying, lie, supports_under
@@ -148,7 +149,7 @@ class FreeStroke:
                 gone = done.amount
                 done, lying = self._led(hand, asked), hand.free.settle()
         except PalpateError as problem:
-            raise hand.refusal(problem) from problem
+            raise refusal(hand, problem) from problem
         return done, _stroked(hand, lying)
 
     def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
@@ -264,3 +265,13 @@ def stroke_of(
     chosen = thing.palpate
     behind = found_behind(thing, drawn)
     return Stroke(drawn, grips, chosen.young_modulus, chosen.static_friction, behind)
+
+
+def refusal(hand: FreePush | FreeHold, problem: PalpateError) -> PalpateError:
+    """What is said where the body does not come to rest in a hand."""
+    match problem:
+        case SwallowedError():
+            return PalpateError(hand.swallowed)
+        case RestlessError():
+            return PalpateError(hand.restless)
+    return problem

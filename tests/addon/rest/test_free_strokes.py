@@ -252,9 +252,10 @@ def test_a_hand_that_finds_no_rest_says_which_it_is(palpate, hand):
     """
     room, name = hand.split(".")
     refusals, found = part("core.rest.refusals"), part("core.errors").PalpateError("found")
-    refusal = getattr(part(f"operators.stroke.answer.{room}"), name).refusal
+    hand = getattr(part(f"operators.stroke.answer.{room}"), name)
+    refusal = part("operators.stroke.answer.free_stroke").refusal
     told = [
-        refusal(None, problem)
+        refusal(hand, problem)
         for problem in (refusals.RestlessError("a"), refusals.SwallowedError("b"), found)
     ]
     assert told[2] is found

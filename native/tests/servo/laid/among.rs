@@ -1,7 +1,6 @@
 //! A body on another one: what its ticks take, and faults.
 
-use super::{GRAVITY, free};
-use crate::counting::counted;
+use super::{GRAVITY, allocates_nothing, free};
 use crate::scripted::{DT, OPTIONS, Table, probe};
 use crate::tools_on_fingers::{ball, surface};
 use glam::{DMat3, DQuat, DVec3};
@@ -68,19 +67,7 @@ fn ticks_of_two_bodies_allocate_nothing() {
             ]
         })
         .collect();
-    for device in &table.devices {
-        device.sent.lock().unwrap().reserve(2 * ways.len());
-    }
-    let mut together = 0;
-    let ((), allocations) = counted(|| {
-        for readings in &ways {
-            let published = table.tick_all(DT, readings);
-            let touching = published.fingers().iter();
-            together += usize::from(touching.filter(|told| told.snapshot.touching).count() == 2);
-        }
-    });
-    assert_eq!(allocations, 0);
-    assert!(together > 300, "{together}");
+    allocates_nothing(&mut table, &ways);
 }
 
 #[test]
