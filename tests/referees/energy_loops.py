@@ -24,6 +24,8 @@ REST = 20
 # Contact points that differ by so many depths, and forces by such a share of themselves, are the
 # same: what is stored then differs by less than a thousandth of F d / 2.
 SAME = 5e-4
+# Less than so many depths under the surface is not pressed in but led along it, by rounding.
+GRAZED = 1e-9
 # Fingers of a pair begin at most so many depths apart.
 APART = 4.0
 
@@ -137,7 +139,7 @@ def random_pairs(loops: Sequence[Loop], seed: int) -> Iterator[tuple[Loop, Loop]
 
 def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
     """The work of fingers led round together, by the trapezoidal rule; None where one did not touch
-    when it had been pressed in: there is no F d of what it only grazes.
+    when it had been pressed in, or touched what it goes along: there is no F d of what it only grazes.
 
     ``follow`` leads ``m`` fingers on along (ticks, m, 3) and gives the forces on them, newton, of
     that shape, and at the end their contact points (m, 3), of tools the middle of the pressure.
@@ -148,9 +150,10 @@ def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
     forces = np.concatenate([part[0] for part in parts])
     places = [part[1] for part in parts]
     size = np.linalg.norm(forces, axis=2)
-    if size[PRESS + REST - 1].min() == 0.0:
-        return None
     depths = np.array([loop.depth for loop in loops])
+    pressed = np.linalg.norm(places[0] - path[PRESS + REST - 1], axis=1)
+    if size[PRESS + REST - 1].min() == 0.0 or (pressed < GRAZED * depths).any():
+        return None
     work = np.einsum("tfx,tfx->t", 0.5 * (forces[1:] + forces[:-1]), np.diff(path, axis=0))
     work /= 0.5 * (size.max(axis=0) * depths).max()
     rounds = []

@@ -1,5 +1,7 @@
 """Points and tools give no energy on closed paths without friction."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bodies.soft_block import soft_block
@@ -55,6 +57,21 @@ def test_none_gives_energy_to_motors(body, max_force):
     alone = [(loop,) for loop in loops_of(body, LOOPS)]
     coupled = Settings(YOUNG_MODULUS, coupling=Coupling(800.0, 4.0, passivity_control=True))
     gives_nothing(books_of(native_body(body), alone, coupled, max_force))
+
+
+def test_a_way_along_a_face_is_not_counted():
+    """It touches by rounding, and a share of such a force says nothing."""
+    block = soft_block((0.02, 0.02, 0.02), (2, 2, 2), poisson_ratio=0.3)
+    top, middle = block.mesh.nodes[:, 2].max(), block.mesh.nodes.mean(axis=0)
+    loop = loops_of(block, 1)[0]
+    start = np.append(middle[:2] + 1e-3, top - 4 * np.spacing(top))
+    outward = np.linspace(0.02, 0.0, len(loop.press))[:, None] * np.array([0.0, 1.0, 0.0])
+    rounds = np.repeat(start[None], len(loop.round), axis=0)
+    beside = replace(loop, depth=0.01, press=start + outward, round=rounds)
+    follow = led(native_body(block), Settings(YOUNG_MODULUS), (beside,), POINTS[:1])
+    forces, _ = follow(beside.path[:, None])
+    assert 0.0 < np.linalg.norm(forces, axis=2).max() < 1e-9
+    assert books((beside,), follow) is None
 
 
 TOOL_LOOPS = 4
