@@ -139,7 +139,8 @@ def random_pairs(loops: Sequence[Loop], seed: int) -> Iterator[tuple[Loop, Loop]
 
 def books(loops: Sequence[Loop], follow: Follow) -> Books | None:
     """The work of fingers led round together, by the trapezoidal rule; None where one did not touch
-    when it had been pressed in, or touched what it goes along: there is no F d of what it only grazes.
+    when it had been pressed in, or touched what it goes along: of what it only grazes there is no
+    F d.
 
     ``follow`` leads ``m`` fingers on along (ticks, m, 3) and gives the forces on them, newton, of
     that shape, and at the end their contact points (m, 3), of tools the middle of the pressure.
