@@ -4,7 +4,8 @@
 
 Goes on after what fails, so that one call tells all, and ends with 1 if anything failed. What
 passed is written down: a call that was broken off goes on where it was, as long as the commit is
-the same and nothing has changed since.
+the same and nothing has changed since. Steps that are named run alone, and two such calls may run
+side by side: those under wine, for example, beside the packages.
 """
 
 from __future__ import annotations
@@ -192,7 +193,9 @@ def main(arguments: list[str] | None = None, run: Run = subprocess.run) -> int:
     outcomes = _kept(place, of)
     not_yet = [name for name in every if outcomes.get(name, Outcome(NOT_YET)).word != PASSED]
     for name in options.steps or not_yet:
-        outcomes[name] = outcome(every[name], run)
+        came_to = outcome(every[name], run)
+        # What a call beside this one has written down since stays.
+        outcomes |= _kept(place, of) | {name: came_to}
         _keep(place, of, outcomes)
     print(told(every.values(), outcomes))
     return int(any(one.word == FAILED for one in outcomes.values()))

@@ -66,6 +66,20 @@ def test_what_passed_is_not_run_again_until_something_changes(ran, capsys, monke
     assert CORE in commands
 
 
+def test_two_calls_side_by_side_leave_each_other_what_they_found(ran, capsys):
+    _, run = ran
+
+    def beside(command, **_):
+        main(["make test-servo"], run)
+        return run(command)
+
+    main([CORE], beside)
+    capsys.readouterr()
+    main([LINT], run)
+    out = capsys.readouterr().out
+    assert words(out, CORE)[0] == words(out, "make test-servo")[0] == "passed"
+
+
 def test_nothing_holds_of_files_that_are_in_no_commit(ran, monkeypatch):
     commands, run = ran
     monkeypatch.setattr(release_check, "commit", lambda: "")
