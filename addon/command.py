@@ -18,7 +18,8 @@ from ..core.shape.shapes import FORMER_NAMES, SHAPES, shape_name
 from ..core.softness.scales.materials import MATERIALS
 from ..operators.bake import bake_session
 from ..operators.object import body_store
-from ..operators.press.press_once import PressedFinger, press_several
+from ..operators.press.press_once import press_several
+from ..operators.press.pressed import PressedFinger
 from ..operators.shape.drawn_shape import chosen_shape
 from .blend_file import opened_object, save
 from .properties.finger import MODE_ITEMS, TIP_ITEMS

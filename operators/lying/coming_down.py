@@ -20,6 +20,10 @@ from . import rest_layer
 from .free_body import LANDING, FreeBody, Lying, lie, supports_under
 from .free_pile import FreePile, piled
 from .laid import is_animated, lay
+from .together import together
+
+# Said where an object that is pressed does not come to rest.
+ROLLS = "The object slides or rolls away and finds no rest; push nearer to its middle, or pin it"
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +149,22 @@ def begun(
     """
     opened = [open_body(thing, graph.scene) for thing in things]
     return lying_bodies(things, opened, graph, height)
+
+
+def come_together(
+    thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph
+) -> tuple[list[bpy.types.Object], Alone | FreePile]:
+    """An object whose body is open and all soft ones that it rests on, in this order; and their
+    bodies as of :func:`begun`.
+
+    Raises
+    ------
+    PalpateError
+        As of :func:`begun`.
+    """
+    things = together(thing, ())
+    opened = [drawn, *(open_body(other, graph.scene) for other in things[1:])]
+    return things, lying_bodies(things, opened, graph, LANDING)
 
 
 def lying_bodies(

@@ -6,7 +6,8 @@ from ...core.errors import PalpateError
 from ..reporting.translated import reported
 from ..session.press_events import Source
 from .modal_press import ModalPress
-from .press_once import Pressed, press_once
+from .press_once import press_once
+from .pressed import Pressed
 
 SOURCES = {"POINTER": Source.POINTER, "EMPTY": Source.EMPTY}
 

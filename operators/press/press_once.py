@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -20,43 +19,19 @@ from ...core.shape.felt import felt, loads_of
 from ...core.shape.meeting import settled
 from ..imprint import kept_imprint
 from ..layer import place_marks
-from ..object.drawn_body import DrawnBody, open_pinned
+from ..object.drawn_body import DrawnBody, open_body
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
-from ..scene.body_frame import BodyFrame, Point, as_point
+from ..scene.body_frame import BodyFrame, as_point
 from ..session.live_settings import contact_mode
 from ..shape.drawn_shape import closing_shape
 from ..tool import tool_turn
-from ..tool.finger_tip import chosen_tip
+from ..tool.finger_tip import FingerTip, chosen_tip
 from ..traction.drawn_traction import patches_of, tractions_of
+from .press_resting import press_resting
+from .pressed import Pressed, PressedFinger
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class PressedFinger:
-    """Result of one finger; ``force`` (N, on the finger) in world axes, ``depth`` in metres."""
-
-    made: Touch
-    force: Point
-    depth: float
-
-
-@dataclass(frozen=True, eq=False)
-class Pressed:
-    """Result of a press; vectors in world axes, SI units. ``remarks`` report a changed tool and
-    of files that could not be used or written.
-    """
-
-    fingers: tuple[PressedFinger, ...]
-    largest_displacement: float
-    layer: str
-    remarks: tuple[str, ...] = ()
-
-    @property
-    def force(self) -> Point:
-        """The first finger's, N."""
-        return self.fingers[0].force
 
 
 def press_once(
@@ -93,19 +68,36 @@ def press_several(
     PalpateError
         The object cannot be pressed, a coordinate is not finite, or the tool cannot be used.
     """
-    drawn = open_pinned(thing, scene)
-    frame, young_modulus = drawn.frame, thing.palpate.young_modulus
+    drawn = open_body(thing, scene)
     tip = chosen_tip(scene, thing, drawn.size)
     points = [_point(at, "at") for at in ats]
     ways = [_point(by, "by") for by in bys]
     found = _seen_places(thing, drawn, points)
-    frames = [frame if place is None else place.frame(frame) for place in found]
     places = np.array(
         [
-            _point(frame.body_from_world(point), "at") if place is None else place.rest
+            _point(drawn.frame.body_from_world(point), "at") if place is None else place.rest
             for place, point in zip(found, points, strict=True)
         ]
     )
+    if drawn.body.is_free:
+        return press_resting(thing, drawn, tip, places, np.array(ways), keep=keep)
+    frames = [drawn.frame if place is None else place.frame(drawn.frame) for place in found]
+    return _press_pinned(thing, scene, drawn, tip, places, ways, frames, keep=keep)
+
+
+def _press_pinned(
+    thing: bpy.types.Object,
+    scene: bpy.types.Scene,
+    drawn: DrawnBody,
+    tip: FingerTip,
+    places: Array,
+    ways: Sequence[Array],
+    frames: Sequence[BodyFrame],
+    *,
+    keep: bool,
+) -> Pressed:
+    """Press of an object that its pins hold; ``frames`` are those where it is touched, as seen."""
+    young_modulus = thing.palpate.young_modulus
     inward = np.array(
         [one.turn_to_body(way) * one.metres_per_unit for one, way in zip(frames, ways, strict=True)]
     )
@@ -122,7 +114,7 @@ def press_several(
             for one, local, way in zip(made, frames, inward, strict=True)
         ),
         largest_displacement=float(np.linalg.norm(met.displacements, axis=1).max()),
-        layer=kept_imprint.keep_moved(thing, scene, frame, moved, borne) if keep else "",
+        layer=kept_imprint.keep_moved(thing, scene, drawn.frame, moved, borne) if keep else "",
         remarks=tuple(filter(None, (tip.remark, shape.notice))),
     )
 

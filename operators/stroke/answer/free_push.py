@@ -13,7 +13,7 @@ from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.rest import Rest
-from ...lying.coming_down import Alone
+from ...lying.coming_down import ROLLS, Alone
 from ...lying.free_body import Lying
 from ...lying.free_pile import FreePile
 from ...object.drawn_body import DrawnBody
@@ -23,8 +23,6 @@ from .motion import Asked
 from .thickness import Thickness
 
 Array = NDArray[np.float64]
-
-ROLLS = "The object slides or rolls away and finds no rest; push nearer to its middle, or pin it"
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,11 +16,10 @@ from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ....core.rest.refusals import RestlessError, SwallowedError
 from ...lying.before import Before
-from ...lying.coming_down import Alone, lying_bodies, show
-from ...lying.free_body import LANDING, Lying, lie, supports_under
+from ...lying.coming_down import Alone, come_together, show
+from ...lying.free_body import Lying, lie, supports_under
 from ...lying.free_pile import FreePile
-from ...lying.together import together
-from ...object.drawn_body import DrawnBody, open_body
+from ...object.drawn_body import DrawnBody
 from ...scene.object_handle import ObjectHandle
 from ...shape.drawn_shape import found_behind
 from .deepest import ENDS
@@ -74,9 +73,7 @@ class FreeStroke:
             It does not, or cannot move by itself.
         """
         graph = bpy.context.evaluated_depsgraph_get()
-        things = together(thing, ())
-        opened = [drawn, *(open_body(other, graph.scene) for other in things[1:])]
-        coming = lying_bodies(things, opened, graph, LANDING)
+        things, coming = come_together(thing, drawn, graph)
         rested, *others = coming.settle()
         before = tuple((ObjectHandle.of(one), Before.of(one)) for one in things)
         return cls(
