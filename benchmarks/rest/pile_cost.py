@@ -2,12 +2,12 @@
 
     python benchmarks/rest/pile_cost.py [--cells N] [--ticks N] [--bodies N ...] [--picture FILE]
 
-Cubes of 50 mm with about 1,700 nodes stand on each other, with friction and without; times are the
-processor's, of the tick alone. Two cubes are then pressed by a fingertip of 8 mm, by the pile's own
-ticks, which take as long as they need, and by the servo's whole ones, which are bounded. The exit
-status tells whether 8 bodies take less than a frame of 16 ms, and the press in the servo 0.3 ms at
-the median and 0.7 at the worst, as a loop of 1 kHz wants it. ``--picture`` draws how the cost grows
-with bodies and contacts.
+Cubes of 50 mm with about 1,700 nodes stand on each other, with friction and without, and 8 of them
+between boards, 16 colliders with the floor; times are the processor's, of the tick alone. Two cubes
+are then pressed by a fingertip of 8 mm, by the pile's own ticks, which take as long as they need,
+and by the servo's whole ones, which are bounded. The exit status tells whether 8 bodies take less
+than a frame of 16 ms, and the press in the servo 0.3 ms at the median and 0.7 at the worst, as a
+loop of 1 kHz wants it. ``--picture`` draws how the cost grows with bodies and contacts.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ import numpy as np
 from palpate_servo.harness import SteppedFingers
 
 from palpate.core.body.soft_body import SoftBody
-from palpate.core.contact.tool.pose import Pose
-from palpate.core.contact.tool.tools import sphere
+from palpate.core.contact.tool.pose import Pose, facing
+from palpate.core.contact.tool.tools import plate, sphere
 from palpate.core.pile.pile import Pile
 from palpate.core.pile.pile_settings import PileSettings
-from palpate.core.rest.support import Floor
+from palpate.core.rest.support import Floor, Support
 from palpate.core.servo.session import native_tool
 from palpate.core.servo.settings import Settings
 from palpate.tests.bodies.free_shapes import free_block
@@ -34,18 +34,34 @@ DT = 1e-3
 # Cubes are laid down so far above what they come to rest on, m, and given so many ticks for it.
 ABOVE, LANDING = 2e-4, 60
 TIP = sphere(0.008)
+# Boards press so far in, m.
+SQUEEZED = 1e-4
+# Colliders of a scene besides the floor.
+BOARDS = 15
 FRAME, FRAMED = 16.0, 8
 # Of a press in the servo, ms: the median and the worst.
 MEDIAN, WORST = 0.3, 0.7
 FRICTIONS = (0.0, 0.5)
 
 
-def stack(body: SoftBody, count: int, friction: float, *, pressed: bool) -> Pile:
-    """Some cubes on each other on a floor, and a fingertip above the topmost."""
+def stack(
+    body: SoftBody, count: int, friction: float, *, boards: int = 0, pressed: bool = False
+) -> Pile:
+    """Some cubes on each other on a floor, ``boards`` at their sides from the lowest up, and
+    a fingertip above the topmost.
+    """
     size = float(np.ptp(body.mesh.nodes[:, 2]))
-    bodies = [(body, Pose.at([0.0, 0.0, ABOVE + k * (size + ABOVE)])) for k in range(count)]
+    heights = [ABOVE + k * (size + ABOVE) for k in range(count)]
+    bodies = [(body, Pose.at([0.0, 0.0, height])) for height in heights]
     tools = [(TIP, tip_above(body, count))] if pressed else []
-    return Pile(bodies, [Floor(friction=friction)], tools, settings=PileSettings(friction=friction))
+    board = plate(0.8 * size, 0.8 * size)
+    supports: list[Floor | Support] = [Floor(friction=friction)]
+    for number in range(boards):
+        outward = np.array([1.0 if number % 2 else -1.0, 0.0, 0.0])
+        middle = 0.5 * np.array([size, size, size]) + [0.0, 0.0, heights[number // 2]]
+        at = middle + (0.5 * size - SQUEEZED) * outward
+        supports.append(Support(board, Pose(at, facing(outward, np.eye(3)[2])), friction))
+    return Pile(bodies, supports, tools, settings=PileSettings(friction=friction))
 
 
 def tip_above(body: SoftBody, count: int, depth: float = 0.0) -> Pose:
@@ -121,16 +137,18 @@ def main() -> int:
     body = free_block((0.05, 0.05, 0.05), (options.cells,) * 3, young_modulus=30_000.0)
     print(f"cubes of {len(body.mesh.nodes)} nodes; ms a tick")
     failed, rows = False, []
-    print("bodies  friction  touches  median   worst")
-    for count in options.bodies:
+    print("bodies  boards  friction  touches  median   worst")
+    for count, boards in [*((count, 0) for count in options.bodies), (FRAMED, BOARDS)]:
         for friction in FRICTIONS:
-            pile = stack(body, count, friction, pressed=False)
+            pile = stack(body, count, friction, boards=boards)
             costs(pile, [], LANDING)
             took, touches = costs(pile, [], options.ticks)
             median = float(np.median(took))
             failed = failed or (count <= FRAMED and median > FRAME)
-            rows.append((count, friction, touches, median))
-            print(f"{count:6}{friction:10.1f}{touches:9}{median:8.2f}{took.max():8.2f}", flush=True)
+            if not boards:
+                rows.append((count, friction, touches, median))
+            figures = f"{touches:9}{median:8.2f}{took.max():8.2f}"
+            print(f"{count:6}{boards:8}{friction:10.1f}{figures}", flush=True)
     if options.picture is not None:
         drawn(rows, options.picture)
     depths = 0.004 * np.sin(np.pi * np.linspace(0.0, 1.0, 10 * options.ticks))
