@@ -14,6 +14,7 @@ from ...core.bake.steps import BakeReport, BakeSettings
 from ...core.body.soft_body import SoftBody
 from ...core.errors import CancelledError, PalpateError
 from ...core.mesh.surface import Surface
+from ...core.sentence import Sentence
 from ...core.stiffness.pins import held_at
 from ..carrier import body_source, carrier, seen_mesh
 from ..carrier.seen_mesh import SeenSurface
@@ -22,7 +23,7 @@ from ..object import baked_record, body_store, kept_body, preview_body, soft_obj
 from ..object.embedded_body import embedded
 from ..object.mesh_look import shape_size
 from ..object.preview_body import PreviewBody
-from ..pins import pin_group, slender_foot, stiff_region
+from ..pins import pin_group, stiff_region, unchosen_pins
 from ..reporting.acting import Acting
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.fingerprint import Fingerprint, changed_body
@@ -47,7 +48,7 @@ class BakeSession:
     job: BakeJob
     progress: JobProgress
     rebuild: bool
-    held_by_core: bool
+    pins_told: Sentence | None
     preview: PreviewBody | None = None
 
     def poll(self) -> bool:
@@ -202,9 +203,9 @@ def start(
 
     Parameters
     ----------
-    by_hand : somebody looks on. An object without a body is held by its core if it stands on a
-        slender foot, and given a coarse body, too, if it is expected to wait for longer than a
-        preview takes.
+    by_hand : somebody looks on. An object without a body is held by its core if nobody chose its
+        pins and it stands on a slender foot, and given a coarse body, too, if it is expected to
+        wait for longer than a preview takes.
     rebuild : only recompute the compliance, from the tetrahedra in the .blend with the present
         pins and material.
 
@@ -221,8 +222,8 @@ def start(
     if soft_object.refusal(thing):
         raise PalpateError(soft_object.refusal(thing))
     drawn = (body_source.read_again if rebuild else body_source.read)(thing, scene)
-    is_first = by_hand and not rebuild and not thing.palpate.body_key
-    held_by_core = is_first and slender_foot.hold_by_core(thing, drawn)
+    is_first = not rebuild and not thing.palpate.body_key
+    told = unchosen_pins.choose(thing, drawn, by_hand=by_hand) if is_first else None
     surface = drawn.surface()
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
     settings = bake_prediction.all_settings_of(thing, drawn)
@@ -233,9 +234,9 @@ def start(
         job = BakeJob(surface, settings, python=python)
     handle, scene_uid = ObjectHandle.of(thing), scene.session_uid
     _current = BakeSession(
-        handle, scene_uid, drawn, fingerprint, settings, job, job.poll(), rebuild, held_by_core
+        handle, scene_uid, drawn, fingerprint, settings, job, job.poll(), rebuild, told
     )
-    if is_first and _takes_long(surface, settings):
+    if by_hand and is_first and _takes_long(surface, settings):
         _current.preview = preview_body.start(thing, scene, drawn, fingerprint, settings)
     return _current
 

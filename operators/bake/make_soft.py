@@ -56,15 +56,8 @@ class BakingOperator(Acting):
 
     def _begin(self, thing: bpy.types.Object, scene: bpy.types.Scene) -> None:
         self._session = bake_session.start(thing, scene, rebuild=self.rebuild, by_hand=True)
-        if self._session.held_by_core:
-            self.report(
-                {"INFO"},
-                reported(
-                    "{name} stands on a slender foot and would lean; it is held by its core. "
-                    "Pins chooses otherwise",
-                    name=thing.name,
-                ),
-            )
+        if self._session.pins_told is not None:
+            self.report({"INFO"}, reported(self._session.pins_told))
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         try:

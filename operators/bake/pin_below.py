@@ -43,7 +43,7 @@ class PALPATE_OT_pin_below(Acting, bpy.types.Operator):
         thing = context.object
         drawn = drawn_surface.read(thing, context.scene)
         group, count = pin_group.mark_below(thing, drawn, self.fraction)
-        thing.palpate.pin_group = group.name
+        thing.palpate.pin_mode, thing.palpate.pin_group = "GROUP", group.name
         self.report({"INFO"}, reported("{count} vertices pinned", count=count))
 
 

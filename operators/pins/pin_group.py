@@ -65,6 +65,12 @@ def pinned_from(thing: bpy.types.Object, surface: DrawnSurface) -> PinWeights:
     return painted(thing, surface)
 
 
+def is_painted(thing: bpy.types.Object, surface: DrawnSurface) -> bool:
+    """Whether an object has the vertex group of its pins, with a vertex that it pins."""
+    group = thing.vertex_groups.get(thing.palpate.pin_group)
+    return group is not None and bool((surface.group(thing, group.name) >= PINNED_FROM).any())
+
+
 def painted(thing: bpy.types.Object, surface: DrawnSurface | None = None) -> PinWeights:
     """Pins of the vertex group that is chosen, at the vertices of a surface or of the mesh.
 

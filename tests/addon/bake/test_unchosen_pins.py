@@ -1,15 +1,19 @@
-"""What stands on a slender foot is told from what stands broadly."""
+"""Pins that nobody has chosen: a slender foot is told from a broad one, a pin group is taken."""
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Matrix
-from soft_scene import cube, part, select
+from soft_scene import body_of, cube, part, select
 
 pytestmark = pytest.mark.usefixtures("palpate")
 
 
 def slender(thing):
-    drawn_surface, foot = part("operators.scene.drawn_surface"), part("operators.pins.slender_foot")
+    drawn_surface, foot = (
+        part("operators.scene.drawn_surface"),
+        part("operators.pins.unchosen_pins"),
+    )
     return foot.is_slender(drawn_surface.read(thing, bpy.context.scene), 0.1)
 
 
@@ -53,24 +57,47 @@ def pole():
 
 
 def started(thing, **options):
-    """Whether a bake that is started holds the object by its core; the bake is ended."""
+    """What a bake that is started tells of the object's pins; the bake is ended."""
     session = part("operators.bake.bake_session").start(thing, bpy.context.scene, **options)
     session.end()
-    assert session.held_by_core == (thing.palpate.pin_mode == "CORE")
-    return session.held_by_core
+    return session.pins_told
 
 
 def test_who_makes_it_soft_by_hand_has_it_held_by_its_core(pole):
-    assert started(pole, by_hand=True)
+    assert "slender foot" in started(pole, by_hand=True)
+    assert pole.palpate.pin_mode == "CORE"
 
 
 def test_scripts_and_whoever_chose_pins_have_what_they_ask_for(pole):
-    assert not started(pole)
+    assert started(pole) is None
     pole.palpate.pin_fraction = 0.2
-    assert not started(pole, by_hand=True)
+    assert started(pole, by_hand=True) is None
+    assert pole.palpate.pin_mode == "BELOW"
 
 
 @pytest.mark.parametrize("rebuild", [False, True])
 def test_a_body_that_is_baked_again_keeps_its_pins(pole, rebuild):
     bpy.ops.palpate.make_soft()
-    assert not started(pole, by_hand=True, rebuild=rebuild)
+    assert started(pole, by_hand=True, rebuild=rebuild) is None
+    assert pole.palpate.pin_mode == "BELOW"
+
+
+@pytest.mark.parametrize("by_hand", [False, True])
+def test_a_pin_group_pins_unless_pins_were_chosen(pole, by_hand):
+    group = pole.vertex_groups.new(name="Pinned")
+    assert started(pole) is None, "it pins nothing yet"
+    group.add([0], 1.0, "REPLACE")
+    assert "its vertex group Pinned" in started(pole, by_hand=by_hand)
+    assert pole.palpate.pin_mode == "GROUP"
+    pole.palpate.pin_mode = "BELOW"
+    assert started(pole, by_hand=by_hand) is None
+    assert pole.palpate.pin_mode == "BELOW"
+
+
+def test_a_group_that_is_made_below_a_height_pins(pole):
+    bpy.ops.palpate.pin_below(fraction=0.5)
+    bpy.ops.palpate.make_soft()
+    assert pole.palpate.pin_mode == "GROUP"
+    body = body_of(pole)
+    held = body.mesh.nodes[body.fixed][:, 2]
+    assert np.ptp(held) == pytest.approx(0.5 * np.ptp(body.mesh.nodes[:, 2]), rel=0.3)
