@@ -1,4 +1,4 @@
-"""``blender -c palpate bake|press FILE.blend --object NAME``: the operators without a window.
+"""``blender -c palpate bake|press|animate FILE.blend --object NAME``: operators without a window.
 
 Started with ``blender -c`` Blender has read preferences and extensions but no file; exit status is
 0, or 2 with one line on standard error and nothing written.
@@ -16,28 +16,19 @@ from ..core.contact.touches import ToolTouch
 from ..core.errors import PalpateError
 from ..core.shape.shapes import FORMER_NAMES, SHAPES, shape_name
 from ..core.softness.scales.materials import MATERIALS
+from ..operators.animation.keeping import ITEMS as KEPT_ITEMS
 from ..operators.bake import bake_session
 from ..operators.object import body_store
 from ..operators.press.press_once import press_several
 from ..operators.press.pressed import PressedFinger
 from ..operators.shape.drawn_shape import chosen_shape
 from .blend_file import opened_object, save
+from .command_options import set_up, set_young, within
 from .properties.finger import MODE_ITEMS, TIP_ITEMS
 from .properties.soft_object import FORM_ITEMS, FORMULATION_ITEMS
 
 NAME = "palpate"
 EXIT_ERROR = 2
-
-# Numeric options: the property that each sets, and its unit.
-NUMBERS = {
-    "young": ("young_modulus", 1.0),
-    "poisson": ("poisson_ratio", 1.0),
-    "edge_length": ("edge_length", 1.0),
-    "epsilon": ("epsilon", 1.0),
-    "time_limit": ("time_limit", 1.0),
-    "stiff_factor": ("stiff_factor", 1.0),
-    "tolerance": ("compression_tolerance", 0.01),
-}
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -71,7 +62,7 @@ def run(words: list[str]) -> int:
 def bake(arguments: argparse.Namespace) -> dict[str, object]:
     """Make an object soft and save the file."""
     thing = opened_object(arguments.file, arguments.object)
-    _set_up(thing.palpate, arguments)
+    set_up(thing.palpate, arguments)
     before = body_store.present()
     body, report = bake_session.run(thing, bpy.context.scene)
     written = body_store.stamp(thing)
@@ -108,9 +99,7 @@ def _error(baked: bpy.types.PropertyGroup) -> dict[str, object]:
 def press(arguments: argparse.Namespace) -> dict[str, object]:
     """Press an object once; with --keep save the shape in the file."""
     thing = opened_object(arguments.file, arguments.object)
-    if arguments.young is not None:
-        young = _within(thing.palpate, "young_modulus", "young", arguments.young)
-        thing.palpate.young_modulus = young
+    set_young(thing, arguments)
     if len(arguments.at) != len(arguments.by):
         raise PalpateError(
             f"--by: {len(arguments.by)} for {len(arguments.at)} --at; give one for each finger"
@@ -133,11 +122,32 @@ def press(arguments: argparse.Namespace) -> dict[str, object]:
     }
 
 
+def animate(arguments: argparse.Namespace) -> dict[str, object]:
+    """Bake the animation of what presses an object, and save the file."""
+    thing = opened_object(arguments.file, arguments.object)
+    set_young(thing, arguments)
+    options = {
+        option: getattr(arguments, option)
+        for option in ("frame_start", "frame_end", "step", "forces")
+        if getattr(arguments, option) is not None
+    }
+    before = set(thing.modifiers.keys())
+    try:
+        with bpy.context.temp_override(object=thing, selected_objects=[thing]):
+            bpy.ops.palpate.press_frames(keep=arguments.keep_as.upper(), **options)
+    except RuntimeError as problem:
+        reason = str(problem).strip().removeprefix("Error: ")
+        raise PalpateError(f"{arguments.object}: {reason}") from problem
+    save(arguments.file)
+    made = [modifier.name for modifier in thing.modifiers if modifier.name not in before]
+    return {"object": thing.name, "keep_as": arguments.keep_as, "modifiers": made}
+
+
 def _choose(thing: bpy.types.Object, arguments: argparse.Namespace) -> None:
     """Set tip, contact mode and shape from the options."""
     chosen = bpy.context.scene.palpate
     if arguments.radius is not None:
-        chosen.tip_radius = _within(chosen, "tip_radius", "radius", arguments.radius)
+        chosen.tip_radius = within(chosen, "tip_radius", "radius", arguments.radius)
     if arguments.shape is not None:
         asked = "table" if arguments.shape == "paper" else arguments.shape
         thing.palpate.shape = asked.upper().replace("-", "_")
@@ -160,30 +170,10 @@ def _figures(finger: PressedFinger) -> dict[str, object]:
     }
 
 
-def _set_up(settings: bpy.types.PropertyGroup, arguments: argparse.Namespace) -> None:
-    """Set the panel's properties from the options."""
-    if arguments.material:
-        settings.material = arguments.material
-    if arguments.pin_below is not None:
-        settings.pin_mode, settings.pin_fraction = "BELOW", arguments.pin_below
-    if arguments.pin_group is not None:
-        settings.pin_mode, settings.pin_group = "GROUP", arguments.pin_group
-    if arguments.stiff_group is not None:
-        settings.stiff_group = arguments.stiff_group
-    if arguments.stiff_factor is not None and not settings.stiff_group:
-        raise PalpateError("--stiff-factor: nothing is stiff; name a group by --stiff-group")
-    for name in ("formulation", "form"):
-        if getattr(arguments, name) is not None:
-            setattr(settings, name, getattr(arguments, name).upper())
-    for option, (name, unit) in NUMBERS.items():
-        value = getattr(arguments, option)
-        if value is not None:
-            setattr(settings, name, _within(settings, name, option, value, unit))
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = _OneLineParser(
-        prog="blender -c palpate", description="Make objects soft and press them, without a window."
+        prog="blender -c palpate",
+        description="Make objects soft, press them, and bake animations, without a window.",
     )
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     one = commands.add_parser("bake", help="make an object soft and save the file")
@@ -229,6 +219,17 @@ def _parser() -> argparse.ArgumentParser:
     two.add_argument("--shape", choices=shapes, help="how it deforms; else as the object says")
     two.add_argument("--keep", action="store_true", help="keep a layer and save the file")
     two.set_defaults(run=press)
+    three = commands.add_parser("animate", help="bake an animation and save the file")
+    _add_common(three)
+    for name, told in (("--frame-start", "first"), ("--frame-end", "last")):
+        three.add_argument(
+            name, type=int, metavar="N", help=f"{told} frame; else the scene's {told}"
+        )
+    three.add_argument("--step", type=int, metavar="N", help="keep every so many frames")
+    kinds = [name.lower() for name, *_ in KEPT_ITEMS]
+    three.add_argument("--keep-as", choices=kinds, default="cache", help="what plays it")
+    three.add_argument("--forces", metavar="FILE.csv", help="table of forces a frame")
+    three.set_defaults(run=animate)
     return parser
 
 
@@ -237,24 +238,6 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--object", required=True, metavar="NAME")
     parser.add_argument("--young", type=float, metavar="PA", help="Young's modulus")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
-
-
-def _within(
-    settings: bpy.types.PropertyGroup, name: str, option: str, value: float, unit: float = 1.0
-) -> float:
-    """Value of a property for an option given in its ``unit``; refused where Blender would clamp
-    it silently.
-    """
-    allowed = settings.bl_rna.properties[name]
-    # The bounds are float32, and inclusive.
-    rounding = 1e-6
-    lowest, highest = allowed.hard_min * (1 - rounding), allowed.hard_max * (1 + rounding)
-    if not lowest <= value / unit <= highest:
-        raise PalpateError(
-            f"--{option.replace('_', '-')}: {value:g} is out of range; give a number from "
-            f"{unit * allowed.hard_min:g} to {unit * allowed.hard_max:g}"
-        )
-    return value / unit
 
 
 def _shielded(word: str) -> str:

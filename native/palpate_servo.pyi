@@ -776,8 +776,8 @@ class ContactEngine:
         else its end. The first targets are come to from outside of the body, on the way on which it
         pushes the tool out.
 
-        Raises ValueError for targets that are none, and RuntimeError where the forces do not
-        settle; both name the finger.
+        Raises ValueError for targets that are none or cannot be come to, RuntimeError where the
+        forces do not settle, and FloatingPointError where one is no number; all name the finger.
         """
 
 @final

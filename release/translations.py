@@ -30,7 +30,12 @@ CALLS = {"Sentence", "reported", "shown", "Material", "_silicone", "Relaxation",
 TABLES = {"EXPLANATIONS", "STAGES", "STEP_TEXTS"}
 # Read by whoever types commands, in English.
 COMMANDS = (
-    *("addon/command.py", "addon/blend_file.py", "core/mesh/read_mesh.py"),
+    *(
+        "addon/command.py",
+        "addon/command_options.py",
+        "addon/blend_file.py",
+        "core/mesh/read_mesh.py",
+    ),
     "core/servo/haply_models.py",
     *("simulated/board", "simulated/hand", "simulated/device_process.py"),
     # Names of nodes and of their inputs, by which files know them.

@@ -25,6 +25,7 @@ from .tool.pose import Pose
 from .tool.tool_surface import surface_and_correction
 from .tool.tools import Tool
 from .touches import PointTouch, ToolTouch, Touch
+from .unsettled import NotANumberError, UnsettledError
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
@@ -123,8 +124,10 @@ class Press:
 
         Raises
         ------
+        UnsettledError, NotANumberError
+            The forces do not settle, or one is no number.
         PalpateError
-            An invalid goal, or forces that do not settle.
+            An invalid goal.
         """
         targets = [
             (goal.position, goal.rotation)
@@ -134,9 +137,19 @@ class Press:
         ]
         try:
             settled = self._engine.settle(targets)
-        except (ValueError, RuntimeError) as problem:
-            raise PalpateError("press: {problem}", problem=problem) from problem
+        except (ValueError, FloatingPointError, RuntimeError) as problem:
+            raise _kind_of(problem)("press: {problem}", problem=problem) from problem
         return tuple(_touch(self.body, *one) for one in zip(self.tips, goals, settled, strict=True))
+
+
+def _kind_of(problem: Exception) -> type[PalpateError]:
+    """What an error of the native engine is to a user."""
+    match problem:
+        case FloatingPointError():
+            return NotANumberError
+        case RuntimeError():
+            return UnsettledError
+    return PalpateError
 
 
 def _native_tips(

@@ -86,9 +86,9 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
                 asked, stroked = self._stroke.ended(asked, stroked)
             draw(thing, self._stroke, stroked)
             self._keep(scene, thing, asked, stroked)
-            if asked is not wanted:
+            if stroked.ends:
                 self.tell(asked, self._frame, self._touched.turn)
-                self.report({"WARNING"}, shown(self._stroke.ends))
+                self.report({"WARNING"}, reported(stroked.ends))
         except BaseException:
             self._give_up(thing)
             raise
@@ -221,8 +221,8 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         problem = ""
         try:
             self._last = self._stroke.towards(wanted)
-            if self._last[0] is not wanted:
-                problem = f"   {shown(self._stroke.ends)}"
+            if self._last[1].ends:
+                problem = f"   {shown(self._last[1].ends)}"
         except PalpateError as refused:
             # As far as it went; back from there the stroke goes on.
             problem = f"   {shown(refused)}"

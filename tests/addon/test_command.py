@@ -6,7 +6,7 @@ import json
 
 import bpy
 import pytest
-from soft_scene import body_of, cube, part
+from soft_scene import body_of, cube, empty, part, seen_places
 
 
 @pytest.fixture
@@ -57,6 +57,30 @@ def test_bake_saves_a_file_that_can_be_pressed(figures_of, scene):
     assert bpy.data.objects["Prop"].modifiers.keys() == [pressed["layer"]] == ["Press 1"]
 
 
+def test_an_animation_is_baked_by_a_process_of_its_own(figures_of, command, scene, capfd):
+    figures_of("bake {scene} --object Prop --edge-length 0.2")
+    line = "animate {scene} --object Prop --frame-end 3"
+    assert command(line) == 2
+    assert "Prop: " in capfd.readouterr().err
+    bpy.ops.wm.open_mainfile(filepath=str(scene))
+    settings = bpy.context.scene.palpate
+    settings.tip, settings.tip_radius = "SPHERE", 0.02
+    settings.source, settings.source_empty = "EMPTY", empty()
+    for frame, height in ((1, 0.05), (3, 0.042)):
+        settings.source_empty.location.z = height
+        settings.source_empty.keyframe_insert("location", frame=frame)
+    bpy.ops.wm.save_mainfile()
+    figures = figures_of(f"{line} --forces //forces.csv")
+    assert figures["modifiers"] == ["Palpate Animation"]
+    assert len((scene.parent / "forces.csv").read_text().splitlines()) == 1 + 3
+    bpy.ops.wm.open_mainfile(filepath=str(scene))
+    heights = []
+    for frame in (1, 3):
+        bpy.context.scene.frame_set(frame)
+        heights.append(seen_places(bpy.data.objects["Prop"])[:, 2].max())
+    assert heights[1] < heights[0] - 1e-4
+
+
 def test_form_formulation_and_stiff_region_are_chosen_by_options(figures_of, scene):
     bpy.ops.wm.open_mainfile(filepath=str(scene))
     prop = bpy.data.objects["Prop"]
@@ -89,7 +113,7 @@ def test_a_bake_whose_scene_cannot_be_saved_leaves_no_body(command, scene, capfd
 
 @pytest.mark.parametrize(("tolerance", "percent"), [(1e-5, 0.001), (0.05, 5.0)])
 def test_the_ends_of_a_range_belong_to_it(palpate, tolerance, percent):
-    within = part("addon.command")._within
+    within = part("addon.command_options").within
     settings = bpy.context.object.palpate
     found = within(settings, "compression_tolerance", "tolerance", tolerance, 0.01)
     assert found == pytest.approx(percent)

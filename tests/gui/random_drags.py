@@ -81,16 +81,18 @@ def random_drags(
 ) -> Wait:
     """Append what came of so many drags with the tool Palpate, seen from all around.
 
-    Those seen from one side go on from each other; after them all are undone.
+    Those seen from one side go on from each other; after them all are undone, but the last.
     """
     with stage.view():
         bpy.ops.wm.tool_set_by_id(name=TOOL)
     for number in range(count):
         if number % LOOKS_FROM == 0 and number:
-            yield from _undo_all(stage, name)
+            yield from undo_all(stage, name)
             yield from _look_from_elsewhere(stage, rng)
         at = visible_place(stage, name, rng)
         yield from _drag(stage, name, at, rng.uniform(0.0, 2.0 * math.pi), drags)
+        if not drags[-1].hit:
+            yield from stage.picture(f"missed-{bpy.context.preferences.view.ui_scale:g}-{number}")
 
 
 def _drag(stage: Stage, name: str, at: Pixel, angle: float, drags: list[Drag]) -> Wait:
@@ -186,7 +188,8 @@ def _pixels_per_unit(stage: Stage, here: Vector) -> float:
     return float((ends[1] - ends[0]).length) / step
 
 
-def _undo_all(stage: Stage, name: str) -> Wait:
+def undo_all(stage: Stage, name: str) -> Wait:
+    """Take the drags back that were seen from one side."""
     region = stage.region("WINDOW")
     yield from stage.move((region.x + 0.3 * region.width, region.y + 0.3 * region.height))
     for _ in range(LOOKS_FROM):

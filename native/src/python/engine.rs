@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use numpy::PyArray1;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFloatingPointError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -153,26 +153,23 @@ impl ContactEngine {
 }
 
 fn unsettled(reason: Unsettled) -> PyErr {
-    let told = match reason {
-        Unsettled::OtherTip(finger) => {
-            return PyValueError::new_err(format!(
-                "target {finger} is not one for that finger's tip; give (position, rotation) of a \
-                 tool, (triangle, alpha, by) of a point"
-            ));
-        }
-        Unsettled::TooFar(finger) => {
-            format!("finger {finger}: the goal is too many strides away; begin nearer")
-        }
-        Unsettled::NoWayOut(finger) => format!(
+    match reason {
+        Unsettled::OtherTip(finger) => PyValueError::new_err(format!(
+            "target {finger} is not one for that finger's tip; give (position, rotation) of a tool, \
+             (triangle, alpha, by) of a point"
+        )),
+        Unsettled::TooFar(finger) => PyValueError::new_err(format!(
+            "finger {finger}: the goal is too many strides away; begin nearer"
+        )),
+        Unsettled::NoWayOut(finger) => PyValueError::new_err(format!(
             "finger {finger}: there is no way out of the body from where it is; begin outside"
-        ),
-        Unsettled::NotANumber(finger) => {
-            format!("finger {finger}: its force came out as no number; press less deep")
-        }
-        Unsettled::Moving(finger, share) => format!(
+        )),
+        Unsettled::NotANumber(finger) => PyFloatingPointError::new_err(format!(
+            "finger {finger}: its force came out as no number; press less deep"
+        )),
+        Unsettled::Moving(finger, share) => PyRuntimeError::new_err(format!(
             "finger {finger}: its force does not settle, it still changes by {share:.1e} of the \
              largest one in a step; press less deep or with a rounder tool"
-        ),
-    };
-    PyRuntimeError::new_err(told)
+        )),
+    }
 }

@@ -13,6 +13,9 @@ from .thickness import Thickness
 MOST_SQUEEZED = 0.8
 DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper (F)"
 ENDS = "The body ends here: it goes no deeper"
+# Where nothing limits it, and yet there is no answer farther in.
+NO_REST = "The fingertip finds no rest any deeper here; try a larger one (F)"
+NO_NUMBER = "No force can be computed any deeper here; try a larger fingertip (F)"
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,6 @@ from ...lying.free_pile import FreePile
 from ...object.drawn_body import DrawnBody
 from ...scene.object_handle import ObjectHandle
 from ...shape.drawn_shape import found_behind
-from .deepest import ENDS
 from .free_hold import FreeHold
 from .free_push import FreePush
 from .motion import Asked, Motion
@@ -87,12 +86,6 @@ class FreeStroke:
             drawn,
         )
 
-    @property
-    def ends(self) -> str:
-        """Why a push goes no deeper."""
-        deepest = self._push.deepest
-        return ENDS if deepest is None else deepest.reason
-
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Move the object to where it came to rest, and those that it rests on."""
         show([thing], [self.rested], self._coming.floor)
@@ -147,7 +140,7 @@ class FreeStroke:
                 done, lying = self._led(hand, asked), hand.free.settle()
         except PalpateError as problem:
             raise refusal(hand, problem) from problem
-        return done, _stroked(hand, lying)
+        return done, self._ending(_stroked(hand, lying), short=done is not asked)
 
     def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
         """The same on the way there, as far as the body goes while a picture is drawn."""
@@ -157,7 +150,7 @@ class FreeStroke:
         done = self._led(hand, asked)
         for _ in range(TICKS):
             hand.free.tick(TICK)
-        return done, _stroked(hand, hand.free.now())
+        return done, self._ending(_stroked(hand, hand.free.now()), short=done is not asked)
 
     def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
         """What came of the stroke once all is at rest; of a push as far as it went, where it never
@@ -183,6 +176,11 @@ class FreeStroke:
             return self.stroked(asked)
         except PalpateError:
             return asked, stroked
+
+    def _ending(self, stroked: Stroked, *, short: bool) -> Stroked:
+        """With why it fell short."""
+        deepest = self._push.deepest if short else None
+        return stroked if deepest is None else replace(stroked, ends=deepest.reason)
 
     def _led(self, hand: FreePush | FreeHold, asked: Asked) -> Asked:
         """Lead a hand; what is asked of it at most."""

@@ -8,11 +8,12 @@ import numpy as np
 
 from ....core.contact.press import ContactSettings, Press
 from ....core.contact.touches import ToolTouch
+from ....core.contact.unsettled import NotANumberError, UnsettledError
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.shape.felt import loads_of
 from ...object.drawn_body import DrawnBody
-from .deepest import DEEPEST
+from .deepest import NO_NUMBER, NO_REST
 from .fingertips import Fingertips
 from .motion import Asked
 from .stroked import Stroked
@@ -55,13 +56,15 @@ class Pushing:
         Raises
         ------
         PalpateError
-            They go no deeper.
+            There is no rest so deep; forces are no numbers there.
         """
         tips = self.fingertips
         try:
             touches = self.press.to([tips.pose(grip, asked.amount) for grip in tips.places(asked)])
-        except PalpateError as problem:
-            raise PalpateError(DEEPEST) from problem
+        except UnsettledError as problem:
+            raise PalpateError(NO_REST) from problem
+        except NotANumberError as problem:
+            raise PalpateError(NO_NUMBER) from problem
         made = [touch for touch in touches if isinstance(touch, ToolTouch)]
         nodes = np.concatenate([touch.nodes for touch in made])
         forces = np.concatenate([touch.nodal_forces for touch in made])

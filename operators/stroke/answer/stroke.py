@@ -15,7 +15,7 @@ from ....core.grip.patch import Grip
 from ....core.shape.felt import held_loads
 from ....core.shape.found_behind import FoundBehind
 from ...object.drawn_body import DrawnBody
-from .deepest import ENDS, Deepest
+from .deepest import Deepest
 from .motion import Asked, Motion
 from .pushing import Pushing
 from .stroked import Stroked
@@ -64,7 +64,7 @@ class Stroke:
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
         """What a motion does, by the object's shape, waiting for that; and what was done of it,
-        where it asked to go deeper than it can.
+        where it asked to go deeper than it can, with the reason.
 
         Raises
         ------
@@ -93,7 +93,8 @@ class Stroke:
         if not inward or thickness is None:
             return asked, self._done(asked, inward=inward)
         # From below: what has been pushed through itself does not come back as it was.
-        most = self._deepest(thickness).metres
+        deepest = self._deepest(thickness)
+        most, ends = deepest.metres, deepest.reason
         done = replace(asked, amount=min(asked.amount, most))
         stroked = self._done(done, inward=True)
         for _ in range(MOST_STEPS - 1):
@@ -104,16 +105,14 @@ class Stroke:
             amount = min(asked.amount, done.amount / max(share, LEAST_GONE))
             try:
                 farther = self._done(replace(asked, amount=amount), inward=True)
-            except PalpateError:
-                # As far as it went, which is told by `ends`.
+            except PalpateError as problem:
+                # As far as it went.
+                ends = problem.sentence
                 break
             done, stroked = replace(asked, amount=amount), farther
-        return (asked if done.amount == asked.amount else done), stroked
-
-    @property
-    def ends(self) -> str:
-        """Why a push goes no deeper."""
-        return ENDS if self._thickness is None else self._deepest(self._thickness).reason
+        if done.amount == asked.amount:
+            return asked, stroked
+        return done, replace(stroked, ends=ends)
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Nothing moves an object that is pinned."""

@@ -28,6 +28,7 @@ class Stroked:
     lying : where a body that nobody holds lies then; None of a pinned one.
     others : where soft ones lie that it rests on.
     springs_back : whether nothing of its shape stays once it is let go, but where it lies.
+    ends : why it went no deeper, where more was asked; else empty.
     """
 
     displacements: NDArray[np.float64]
@@ -39,6 +40,7 @@ class Stroked:
     lying: Lying | None = None
     others: tuple[Lying, ...] = ()
     springs_back: bool = False
+    ends: str = ""
 
     @property
     def tools(self) -> tuple[PressingTool, ...]:

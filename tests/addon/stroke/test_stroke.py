@@ -208,6 +208,57 @@ def test_a_push_stays_as_far_as_it_went_where_it_goes_no_farther(bar, monkeypatc
     assert np.linalg.norm(moved(bar, "Press 1"), axis=1).max() > 0.5 * depths[0]
 
 
+def begun_at(thing, place, radius):
+    """A stroke that has begun, and a push to ask of it."""
+    scene, room = bpy.context.scene, "operators.stroke.answer"
+    drawn = part("operators.object.drawn_body").open_body(thing, scene)
+    grips = part(f"{room}.grips").grips_at(drawn, np.array(place), radius, (False,) * 3)
+    motions = part(f"{room}.motion")
+    stroke = part(f"{room}.free_stroke").stroke_of(thing, drawn, grips)
+    return stroke, lambda depth: motions.Asked(motions.Motion.PUSH, depth)
+
+
+@pytest.mark.parametrize(
+    ("radius", "depth", "why"),
+    [(0.006, 0.003, ""), (0.006, 0.03, "DEEPEST"), (0.03, 0.2, "ENDS")],
+)
+def test_a_push_that_ends_says_what_ends_it(thing, radius, depth, why):
+    """The fingertip, or the body's far side; nothing where it goes as deep as was asked."""
+    stroke, push = begun_at(thing, TOP, radius)
+    asked, stroked = stroke.stroked(push(depth))
+    assert stroked.ends == (getattr(part("operators.stroke.answer.deepest"), why) if why else "")
+    assert (asked.amount < depth) == bool(why)
+
+
+@pytest.mark.parametrize(
+    ("error", "why"), [("UnsettledError", "NO_REST"), ("NotANumberError", "NO_NUMBER")]
+)
+@pytest.mark.parametrize("first", [True, False], ids=["at once", "farther in"])
+def test_a_push_without_an_answer_says_why(bar, monkeypatch, error, why, first):
+    """It is refused at once with the reason, or stays as far as it went, with the same one."""
+    press, presses = part("core.contact.press").Press, []
+    to = press.to
+
+    def has_no_answer(self, goals):
+        presses.append(goals)
+        # The first one sets the fingertip down.
+        if len(presses) > (1 if first else 2):
+            raise getattr(part("core.contact.unsettled"), error)("press: 1e-3 of the largest")
+        return to(self, goals)
+
+    monkeypatch.setattr(press, "to", has_no_answer)
+    why = getattr(part("operators.stroke.answer.deepest"), why)
+    stroke, push = begun_at(bar, (0.01, 0.0, 0.045), 0.006)
+    if first:
+        with pytest.raises(part("core.errors").PalpateError) as refused:
+            stroke.stroked(push(0.03))
+        assert str(refused.value) == why
+    else:
+        asked, stroked = stroke.stroked(push(0.03))
+        assert stroked.ends == why
+        assert 0.0 < asked.amount < 0.03
+
+
 @pytest.fixture
 def real(thing):
     thing.palpate.shape = "ROTATION_STRAIN"

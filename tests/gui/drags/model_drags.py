@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from random_drags import Drag, clear_of_sidebar, random_drags
+from random_drags import Drag, clear_of_sidebar, random_drags, undo_all
 from stage import Stage, Wait
 
 from bl_ext.user_default.palpate.addon import known_status
@@ -46,6 +46,7 @@ def drags_press_where_the_cursor_is(stage: Stage) -> Wait:
             bpy.context.preferences.view.ui_scale = 1.0
             _note_drags(stage, scale, drags)
         missed += [drag for drag in drags if not drag.hit]
+        yield from undo_all(stage, name)
     assert not missed, f"{len(missed)} drags missed, the first: {missed[0]}"
 
 
