@@ -66,7 +66,7 @@ class Drag:
     def hit(self) -> bool:
         """Whether the surface was pressed where the cursor was, as one would see it."""
         most = self.moved if self.off <= self.radius else self.pressed
-        ends = deepest.ENDS in self.said or deepest.DEEPEST in self.said
+        ends = not {deepest.ENDS, deepest.PINNED, deepest.DEEPEST}.isdisjoint(self.said)
         least = LEAST_AT_END if ends else LEAST_PRESSED
         return max(most, self.pressed) >= least * DRAG_PIXELS
 

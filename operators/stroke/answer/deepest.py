@@ -13,6 +13,7 @@ from .thickness import Thickness
 MOST_SQUEEZED = 0.8
 DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper (F)"
 ENDS = "The body ends here: it goes no deeper"
+PINNED = "What is pinned is near beneath: it goes no deeper"
 # Where nothing limits it, and yet there is no answer farther in.
 NO_REST = "The fingertip finds no rest any deeper here; try a larger one (F)"
 NO_NUMBER = "No force can be computed any deeper here; try a larger fingertip (F)"
@@ -29,10 +30,11 @@ class Deepest:
 
     @classmethod
     def of(cls, thickness: Thickness, fingertips: Fingertips) -> Deepest:
-        """Limit at a place: the far side's, or a fingertip's if that is nearer, for a linear body
-        lets go of what it has swallowed, and leans aside.
+        """Limit at a place: that of the far side or of what is pinned, or a fingertip's if that is
+        nearer, for a linear body lets go of what it has swallowed, and leans aside.
         """
-        far = cls(MOST_SQUEEZED * thickness.metres, ENDS)
+        reason = PINNED if thickness.pinned else ENDS
+        far = cls(MOST_SQUEEZED * thickness.metres, reason)
         if not fingertips.reach:
             return far
         tip = cls(FingerTip(fingertips.tool).deepest, DEEPEST)

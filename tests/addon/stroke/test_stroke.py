@@ -230,6 +230,19 @@ def test_a_push_that_ends_says_what_ends_it(thing, radius, depth, why):
     assert (asked.amount < depth) == bool(why)
 
 
+def test_a_push_ends_above_a_pinned_core(palpate):
+    """Which is under half of what lies above the cube's middle."""
+    thing = cube(0.05)
+    thing.palpate.pin_mode = "CORE"
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    stroke, push = begun_at(thing, TOP, 0.012)
+    asked, stroked = stroke.stroked(push(0.015))
+    assert stroked.ends == part("operators.stroke.answer.deepest").PINNED
+    assert 0.0 < asked.amount < 0.8 * 0.025
+    shallow, whole = stroke.stroked(push(0.003))
+    assert (shallow.amount, whole.ends) == (0.003, "")
+
+
 @pytest.mark.parametrize(
     ("error", "why"), [("UnsettledError", "NO_REST"), ("NotANumberError", "NO_NUMBER")]
 )
