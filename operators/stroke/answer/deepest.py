@@ -11,6 +11,9 @@ from .thickness import Thickness
 # Share of its thickness by which a push squeezes a body at most: beyond, it would come out on the
 # far side.
 MOST_SQUEEZED = 0.8
+# The same above what is pinned, which gives way nowhere: beyond, Real finds no shape in some places
+# of a figure, and the surface leaves the fingertip.
+MOST_ABOVE_PINNED = 0.65
 DEEPEST = "This is as deep as the fingertip goes here; a larger one goes deeper (F)"
 ENDS = "The body ends here: it goes no deeper"
 PINNED = "What is pinned is near beneath: it goes no deeper"
@@ -33,8 +36,8 @@ class Deepest:
         """Limit at a place: that of the far side or of what is pinned, or a fingertip's if that is
         nearer, for a linear body lets go of what it has swallowed, and leans aside.
         """
-        reason = PINNED if thickness.pinned else ENDS
-        far = cls(MOST_SQUEEZED * thickness.metres, reason)
+        share, reason = (MOST_ABOVE_PINNED, PINNED) if thickness.pinned else (MOST_SQUEEZED, ENDS)
+        far = cls(share * thickness.metres, reason)
         if not fingertips.reach:
             return far
         tip = cls(FingerTip(fingertips.tool).deepest, DEEPEST)

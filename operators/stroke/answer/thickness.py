@@ -12,9 +12,6 @@ from ...object.drawn_body import DrawnBody
 from ...scene import ray
 
 Array = NDArray[np.float64]
-Triangles = NDArray[np.int64]
-# Corners of a tetrahedron's sides.
-SIDES = ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,9 +20,9 @@ class Thickness:
 
     Attributes
     ----------
-    metres : to the far side, or to what is pinned before that, at rest.
-    inward : float64 (3,), unit vector from the place to there.
-    nodes : int64 (3,), of the triangle there.
+    metres : to the far side, or until a ball meets what is pinned before that, at rest.
+    inward : float64 (3,), unit vector straight in.
+    nodes : int64 (3,), of the triangle there, or three times the pinned one.
     alpha : float64 (3,), area coordinates in it.
     pinned : whether it is what is pinned.
     """
@@ -39,36 +36,40 @@ class Thickness:
     @classmethod
     def under(cls, drawn: DrawnBody, grip: Grip) -> Thickness | None:
         """Thickness under a grip; None where no far side is found, as at a sharp edge."""
-        mesh = drawn.body.mesh
-        # The far side is seen from within.
-        far = mesh.surface_triangles[:, ::-1]
-        sides = [cls._met(drawn, grip, far), cls._met(drawn, grip, _within(drawn), pinned=True)]
+        sides = (cls._far(drawn, grip), cls._core(drawn, grip))
         found = [side for side in sides if side is not None]
-        return min(found, key=lambda side: side.metres) if found else None
+        return min(found, key=lambda side: side.metres, default=None)
 
     @classmethod
-    def _met(
-        cls, drawn: DrawnBody, grip: Grip, triangles: Triangles, *, pinned: bool = False
-    ) -> Thickness | None:
+    def _far(cls, drawn: DrawnBody, grip: Grip) -> Thickness | None:
         mesh = drawn.body.mesh
+        # The far side is seen from within.
+        triangles = mesh.surface_triangles[:, ::-1]
         met = ray.first_hit(grip.centre(mesh), -grip.normal, mesh.nodes, triangles)
         if met is None:
             return None
-        return cls(met.distance, -grip.normal, triangles[met.triangle], met.alpha, pinned)
+        return cls(met.distance, -grip.normal, triangles[met.triangle], met.alpha)
+
+    @classmethod
+    def _core(cls, drawn: DrawnBody, grip: Grip) -> Thickness | None:
+        """The inner pinned node that a ball as wide as the grip meets first: a core may be thinner
+        than the ball, and beside its middle's way.
+        """
+        mesh = drawn.body.mesh
+        held = np.setdiff1d(drawn.body.fixed, mesh.surface_nodes)
+        from_here = mesh.nodes[held] - grip.centre(mesh)
+        ahead = from_here @ -grip.normal
+        aside = np.linalg.norm(from_here + np.outer(ahead, grip.normal), axis=1)
+        met = np.flatnonzero((ahead > 0.0) & (aside < grip.radius))
+        if not len(met):
+            return None
+        depths = ahead[met] + grip.radius - np.sqrt(grip.radius**2 - aside[met] ** 2)
+        first = held[met[depths.argmin()]]
+        node, alpha = np.full(3, first), np.array([1.0, 0.0, 0.0])
+        return cls(float(depths.min()), -grip.normal, node, alpha, pinned=True)
 
     def gone(self, depth: float, moved: Array) -> float:
         """Metres of it that are gone at a depth, metres, with displacements (N, 3) of all nodes: a
         part that gives way as a whole is squeezed little.
         """
         return depth - float(self.alpha @ moved[self.nodes] @ self.inward)
-
-
-def _within(drawn: DrawnBody) -> Triangles:
-    """Sides of tetrahedra that are pinned and not of the surface, each wound both ways (k, 3)."""
-    body = drawn.body
-    pinned = np.zeros(len(body.mesh.nodes), dtype=bool)
-    pinned[body.fixed] = True
-    pinned[body.mesh.surface_nodes] = False
-    sides = body.mesh.tets[:, SIDES].reshape(-1, 3)
-    held = sides[pinned[sides].all(axis=1)]
-    return np.concatenate([held, held[:, ::-1]])

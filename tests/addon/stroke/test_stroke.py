@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -241,6 +242,28 @@ def test_a_push_ends_above_a_pinned_core(palpate):
     assert 0.0 < asked.amount < 0.8 * 0.025
     shallow, whole = stroke.stroked(push(0.003))
     assert (shallow.amount, whole.ends) == (0.003, "")
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.004, 0.009, 0.014])
+def test_a_push_ends_above_a_pinned_node_beside_its_way(thing, aside):
+    """A ball that is led in by small steps meets it at the same depth."""
+    drawn = part("operators.object.drawn_body").open_body(thing, bpy.context.scene)
+    grips = part("operators.stroke.answer.grips")
+    grip = grips.grips_at(drawn, np.array(TOP), 0.012, (False,) * 3)[0]
+    mesh = drawn.body.mesh
+    inner = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.surface_nodes)[0]
+    nodes, place = mesh.nodes.copy(), grip.centre(mesh)
+    across = np.cross(grip.normal, (1.0, 0.0, 0.0))
+    nodes[inner] = place - 0.02 * grip.normal + aside * across / np.linalg.norm(across)
+    body = replace(drawn.body, mesh=replace(mesh, nodes=nodes), fixed=np.array([inner]))
+    under = part("operators.stroke.answer.thickness").Thickness.under
+    found = under(replace(drawn, body=body), grip)
+    depths = np.linspace(0.0, 0.05, 50_001)
+    middles = place + np.outer(grip.radius - depths, grip.normal)
+    meets = np.linalg.norm(middles - nodes[inner], axis=1) < grip.radius
+    assert found.pinned == meets.any() == (aside < grip.radius)
+    if found.pinned:
+        assert found.metres == pytest.approx(depths[meets.argmax()], abs=2e-6)
 
 
 @pytest.mark.parametrize(
