@@ -126,7 +126,7 @@ def unbraked(shot: Any) -> bool:
     return np.allclose(shot.contact_force, -shot.nodal_forces.sum(axis=0), rtol=1e-12, atol=0.0)
 
 
-def wait(session: Any, condition: Callable[[], bool], seconds: float = 20.0) -> None:
+def wait(session: Any, condition: Callable[[], bool], seconds: float = 60.0) -> None:
     """Tick a running press, as Blender's timer does, until a condition holds."""
     end = time.monotonic() + seconds
     while True:
