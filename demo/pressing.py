@@ -96,7 +96,7 @@ def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
             seconds.append(time.perf_counter() - begun)
         samples.append(session.loop.servo.samples())
         due = max(due + 1.0 / FRAME_RATE, time.perf_counter())
-        time.sleep(due - time.perf_counter() if due > time.perf_counter() else 0.0)
+        time.sleep(max(due - time.perf_counter(), 0.0))
     return np.array(seconds), np.concatenate(samples)
 
 
