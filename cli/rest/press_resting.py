@@ -80,7 +80,7 @@ def pressed_on_floor(
     )
     resting.settle()
     pairs = zip(starts, ways, strict=True)
-    resting.lead([Pose(start.position + way, start.rotation) for start, way in pairs])
+    resting.lead([start.moved(way) for start, way in pairs])
     return resting.settle()
 
 

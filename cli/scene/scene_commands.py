@@ -79,10 +79,7 @@ def _pressed(
 def _moved(
     tools: Sequence[Led], ways: Sequence[NDArray[np.float64] | Sequence[float]]
 ) -> list[Pose]:
-    return [
-        Pose(pose.position + np.asarray(way), pose.rotation)
-        for (_, pose), way in zip(tools, ways, strict=True)
-    ]
+    return [pose.moved(np.asarray(way)) for (_, pose), way in zip(tools, ways, strict=True)]
 
 
 def _set_down(rests: Sequence[Rest], tool: Tool, at: NDArray[np.float64]) -> Pose:

@@ -151,10 +151,7 @@ def press_tools(
     press.to(starts)
     for step in range(1, steps + 1):
         touches = press.to(
-            [
-                Pose(start.position + step / steps * way, start.rotation)
-                for start, way in zip(starts, moved, strict=True)
-            ]
+            [start.moved(step / steps * way) for start, way in zip(starts, moved, strict=True)]
         )
     return tuple(one for one in touches if isinstance(one, ToolTouch))
 

@@ -165,6 +165,13 @@ class DrawnBody:
         everywhere[self.body.compliance.free_surface] = displacements
         return everywhere
 
+    def surface_displacements(self, displacements: Array, near: Array) -> Array:
+        """The same of the places of the rest surface nearest to points (k, 3), metres."""
+        moved = self.node_displacements(displacements)
+        triangles = self.body.mesh.surface_triangles
+        places = [nearest_place(self.body, point) for point in near]
+        return np.array([place.alpha @ moved[triangles[place.triangle]] for place in places])
+
     def moved_to(self, frame: BodyFrame) -> DrawnBody | None:
         """The same body with its object's present frame; None if that was scaled or sheared."""
         if not self.frame.stretches_as(frame):

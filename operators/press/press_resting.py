@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -19,7 +20,6 @@ from ..imprint import kept_imprint
 from ..lying.before import Before
 from ..lying.coming_down import ROLLS, come_together, show
 from ..lying.free_body import Lying
-from ..lying.laid import lay
 from ..object.drawn_body import DrawnBody
 from ..scene.body_frame import as_point
 from ..tool import tool_turn
@@ -63,12 +63,7 @@ def press_resting(
     pressed = coming.touched_by([(tip.tool, start) for start in starts])
     try:
         pressed.settle()
-        pressed.lead(
-            [
-                Pose(start.position + step, start.rotation)
-                for start, step in zip(starts, steps, strict=True)
-            ]
-        )
+        pressed.lead([start.moved(step) for start, step in zip(starts, steps, strict=True)])
         lying = pressed.settle()
     except RestlessError as problem:
         raise PalpateError(ROLLS) from problem
@@ -97,9 +92,8 @@ def _set_down(
     points, _ = pressing_points(body, tool)
     turn = tool_turn.rotation(scene, rested.frame, -place.axis)
     pose = set_down(body, tool, place, turn, points)
-    corners = body.mesh.surface_triangles[place.triangle]
-    sagged = place.alpha @ drawn.node_displacements(rested.displacements)[corners]
-    return rested.in_world(Pose(pose.position + sagged, pose.rotation))
+    (sagged,) = drawn.surface_displacements(rested.displacements, place.position[None])
+    return rested.in_world(pose.moved(sagged))
 
 
 def _keep(
@@ -112,16 +106,13 @@ def _keep(
     """Keep what the press did beyond the sag of rest, and have all lie where they are; the name of
     the layer.
     """
-    (thing, *others), first = things, lying[0]
+    thing, first, sag = things[0], lying[0], rested[0].moved
     before = [(one, Before.of(one)) for one in things]
     try:
-        show([thing], rested[:1], floor)
-        show(others, lying[1:], floor)
-        lay(thing, first.frame, floor)
+        show(things, [replace(first, moved=sag), *lying[1:]], floor)
         borne = tractions_of(thing, drawn, first.moved, patches_of(first.touches))
-        scene = bpy.context.scene
-        dent = first.moved - rested[0].moved
-        return kept_imprint.keep_moved(thing, scene, drawn.frame, dent, borne)
+        dent = first.moved - sag
+        return kept_imprint.keep_moved(thing, bpy.context.scene, drawn.frame, dent, borne)
     except BaseException:
         for one, was in before:
             was.give_back(one)

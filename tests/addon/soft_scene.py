@@ -226,6 +226,11 @@ def mesh_state(thing: bpy.types.Object) -> dict[str, Any]:
     return state
 
 
+def lying_state(thing: bpy.types.Object) -> tuple[Any, ...]:
+    """The same with where an object lies, and whether that is remembered."""
+    return mesh_state(thing), np.array(thing.matrix_world).tolist(), thing.palpate.is_laid
+
+
 def key_names(thing: bpy.types.Object) -> list[str]:
     """Names of its shape keys."""
     return thing.data.shape_keys.key_blocks.keys() if thing.data.shape_keys else []

@@ -58,6 +58,10 @@ class Pose:
             )
         return cls(place, turn)
 
+    def moved(self, by: NDArray[np.float64]) -> Pose:
+        """The pose moved by a way (3,), metres, and turned as it is."""
+        return Pose(self.position + by, self.rotation)
+
     def to_world(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points (..., 3) of the frame that is so posed, in the frame in which it is."""
         placed: NDArray[np.float64] = points @ self.rotation.T + self.position

@@ -67,8 +67,7 @@ class Fingertips:
 
     def pose(self, grip: Grip, depth: float) -> Pose:
         """Where a fingertip is that has gone in by a depth, metres."""
-        start = self.set_down(grip)
-        return Pose(start.position - depth * grip.normal, start.rotation)
+        return self.set_down(grip).moved(-depth * grip.normal)
 
     def set_down(self, grip: Grip) -> Pose:
         """Where a fingertip just touches a place."""

@@ -70,7 +70,10 @@ class FreeHold:
                 places=len(grips),
             )
         places = tuple(_around(drawn, grip, MOST_GRIPS // len(grips)) for grip in grips)
-        starts = tuple(rested.rest.to_world(one + _moved(drawn, rested, one)) for one in places)
+        starts = tuple(
+            rested.rest.to_world(one + drawn.surface_displacements(rested.displacements, one))
+            for one in places
+        )
         holds = [
             (Hold(place), Pose.at(start))
             for place, start in zip(np.concatenate(places), np.concatenate(starts), strict=True)
@@ -117,11 +120,3 @@ def _around(drawn: DrawnBody, grip: Grip, most: int) -> Array:
     asked = centre + AROUND * grip.radius * ring
     found = [nearest_place(drawn.body, one).position for one in asked]
     return np.array(found if most == 2 else [centre, *found])
-
-
-def _moved(drawn: DrawnBody, rested: Lying, places: Array) -> Array:
-    """How far places (k, 3) of the surface are displaced where a body rests, (k, 3), metres."""
-    moved = drawn.node_displacements(rested.displacements)
-    found = [nearest_place(drawn.body, place) for place in places]
-    triangles = drawn.body.mesh.surface_triangles
-    return np.array([one.alpha @ moved[triangles[one.triangle]] for one in found])

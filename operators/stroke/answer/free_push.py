@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.contact.place import nearest_place
 from ....core.contact.tool.pose import AIR, Pose
 from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
@@ -98,8 +97,7 @@ class FreePush:
 
     def _goal(self, grip: Grip, depth: float) -> Pose:
         """Pose in the world of a fingertip that has gone in from where the surface came to rest."""
-        pose, drawn = self.tips.pose(grip, depth), self.tips.drawn
-        place = nearest_place(drawn.body, grip.centre(drawn.body.mesh))
-        corners = drawn.body.mesh.surface_triangles[place.triangle]
-        moved = place.alpha @ drawn.node_displacements(self.rested.displacements)[corners]
-        return self.rested.in_world(Pose(pose.position + moved, pose.rotation))
+        drawn = self.tips.drawn
+        centre = grip.centre(drawn.body.mesh)
+        (sagged,) = drawn.surface_displacements(self.rested.displacements, centre[None])
+        return self.rested.in_world(self.tips.pose(grip, depth).moved(sagged))

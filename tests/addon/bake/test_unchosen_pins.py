@@ -10,11 +10,9 @@ pytestmark = pytest.mark.usefixtures("palpate")
 
 
 def slender(thing):
-    drawn_surface, foot = (
-        part("operators.scene.drawn_surface"),
-        part("operators.pins.unchosen_pins"),
-    )
-    return foot.is_slender(drawn_surface.read(thing, bpy.context.scene), 0.1)
+    drawn_surface = part("operators.scene.drawn_surface")
+    pins = part("operators.pins.unchosen_pins")
+    return pins.is_slender(drawn_surface.read(thing, bpy.context.scene), 0.1)
 
 
 @pytest.mark.parametrize(

@@ -5,22 +5,11 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import begin, empty, layer_names, mesh_state, part, seen_places, wait
+from soft_scene import begin, empty, layer_names, lying_state, part, seen_places, wait
 
 RADIUS = 0.012
 # Outside, over the top and beside the cube of 50 mm that stands around the origin.
 OVER, BESIDE = (0.004, 0.002, 0.0385), (0.0385, 0.0, 0.0)
-
-
-@pytest.fixture
-def tip(free_cube):
-    chosen = bpy.context.scene.palpate
-    chosen.tip, chosen.own_sizes, chosen.tip_radius = "SPHERE", True, RADIUS
-    return chosen
-
-
-def state(thing):
-    return mesh_state(thing), np.array(thing.matrix_world).tolist(), thing.palpate.is_laid
 
 
 def lead(session, states, start, by):
@@ -52,7 +41,7 @@ def lowest(thing):
 
 
 def test_a_press_from_above_feels_the_floor_and_is_given_back(free_cube, tip, sessions, states):
-    before = state(free_cube)
+    before = lying_state(free_cube)
     session = begin(sessions, states, free_cube)
     lead(session, states, OVER, (0.0, 0.0, -0.006))
     felt = session.snapshot.fingers[0]
@@ -76,7 +65,7 @@ def test_a_press_from_above_feels_the_floor_and_is_given_back(free_cube, tip, se
     assert figures.touching
     assert np.allclose(figures.probe, place - (0.0, 0.0, 0.006), atol=1e-4)
     session.post(states.Moment.CANCEL)
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
 
 
 def test_a_press_from_the_side_takes_it_along_and_enter_keeps_it_there(
@@ -144,17 +133,17 @@ def test_a_simulated_device_presses_it_where_it_lies(free_cube, tip, sessions, s
 
 
 def test_a_file_is_saved_with_the_object_as_it_was(free_cube, tip, sessions, states):
-    before = state(free_cube)
+    before = lying_state(free_cube)
     session = begin(sessions, states, free_cube)
     lead(session, states, OVER, (0.0, 0.0, -0.004))
     session.post(states.Moment.SAVE_BEGINS)
     session.tick()
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
     session.post(states.Moment.SAVE_ENDS)
     session.tick()
     assert free_cube.palpate.is_laid
     session.post(states.Moment.CANCEL)
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
 
 
 def test_a_recording_of_it_is_one_in_the_world(free_cube, tip, sessions, states):

@@ -5,13 +5,9 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, layer_names, mesh_state, part, seen_places, select
+from soft_scene import error_of, layer_names, lying_state, part, seen_places, select
 
 TOP, RADIUS = (0.004, 0.002, 0.025), 0.012
-
-
-def state(thing):
-    return mesh_state(thing), np.array(thing.matrix_world).tolist(), thing.palpate.is_laid
 
 
 def push(thing, depth, place=TOP, **more):
@@ -33,26 +29,9 @@ def test_a_push_dents_the_object_and_stays_as_a_layer(free_cube):
     assert low > -0.025 - 1e-5
 
 
-def test_the_force_is_that_of_a_body_which_rests(free_cube):
+def test_the_force_is_that_of_a_body_which_rests(free_cube, force_alone):
     """By the engine alone, of a cube that lies on a floor."""
     body = part("operators.object.drawn_body").open_body(free_cube, bpy.context.scene)
-    rest, tools = part("core.rest.resting"), part("core.contact.tool.tools")
-    pose, support = part("core.contact.tool.pose").Pose, part("core.rest.support")
-    settings = rest.RestSettings(free_cube.palpate.young_modulus, 0.5)
-    floor = support.Floor(-0.025, 0.5)
-    alone = rest.Resting(body.body, [floor], settings=settings).settle()
-    top = alone.surface()[:, 2].max()
-    start = np.array([TOP[0], TOP[1], top + RADIUS + 2e-3])
-    pressed = rest.Resting(
-        body.body,
-        [floor],
-        [(tools.sphere(RADIUS), pose(start, np.eye(3)))],
-        placement=alone.placement,
-        settings=settings,
-    )
-    pressed.settle()
-    pressed.lead([pose(start - (0.0, 0.0, 0.005), np.eye(3))])
-    expected = np.linalg.norm(pressed.settle().tools[0].force)
     stroke = part("operators.stroke.answer.free_stroke").FreeStroke
     grips = part("operators.stroke.answer.grips").grips_at(
         body, np.array(TOP), RADIUS, (False, False, False)
@@ -61,7 +40,7 @@ def test_the_force_is_that_of_a_body_which_rests(free_cube):
     begun = stroke.begin(free_cube, body, grips)
     _, made = begun.stroked(asked.Asked(asked.Motion.PUSH, 0.003))
     # The place may lie a little higher or lower than the highest of the surface.
-    assert made.force == pytest.approx(expected, rel=0.1)
+    assert made.force == pytest.approx(np.linalg.norm(force_alone), rel=0.1)
 
 
 def test_a_push_from_the_side_moves_it_along(free_cube):
@@ -189,7 +168,7 @@ def test_mirrored_hands_turn_nothing_and_stretch_it(free_cube):
 
 
 def test_more_mirrored_hands_than_there_are_are_refused(free_cube):
-    before = state(free_cube)
+    before = lying_state(free_cube)
     message = error_of(
         bpy.ops.palpate.stroke,
         place=(0.02, 0.02, 0.02),
@@ -199,19 +178,19 @@ def test_more_mirrored_hands_than_there_are_are_refused(free_cube):
         mirrored=(True, True, True),
     )
     assert "two axes" in message
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
 
 
 def test_what_is_let_go_over_nothing_is_given_back(free_cube, board):
     board((0.0, 0.0, -0.025))
     free_cube.palpate.floor = "NONE"
     bpy.ops.palpate.settle()
-    before = state(free_cube)
+    before = lying_state(free_cube)
     message = error_of(
         bpy.ops.palpate.stroke, place=TOP, radius=RADIUS, motion="GRAB", by=(2.0, 0.0, 0.1)
     )
     assert "given back" in message
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
 
 
 def test_an_object_high_above_the_floor_comes_down(free_cube):
@@ -224,7 +203,7 @@ def test_an_object_high_above_the_floor_comes_down(free_cube):
 def test_a_stroke_that_is_given_up_gives_all_back(free_cube):
     free_cube.location.z = 0.05
     bpy.context.view_layer.update()
-    before = state(free_cube)
+    before = lying_state(free_cube)
     body = part("operators.object.drawn_body").open_body(free_cube, bpy.context.scene)
     grips = part("operators.stroke.answer.grips").grips_at(
         body, np.array(TOP), RADIUS, (False, False, False)
@@ -232,17 +211,17 @@ def test_a_stroke_that_is_given_up_gives_all_back(free_cube):
     motion = part("operators.stroke.answer.motion")
     live, drawing = part("operators.layer.live_layer"), part("operators.stroke.stroke_drawing")
     begun = part("operators.stroke.answer.free_stroke").FreeStroke.begin(free_cube, body, grips)
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
     begun.make_ready(free_cube)
     live.hang(free_cube)
     for depth in (0.001, 0.002, 0.004):
         _, made = begun.towards(motion.Asked(motion.Motion.PUSH, depth))
         drawing.draw(free_cube, begun, made)
-    assert state(free_cube) != before
+    assert lying_state(free_cube) != before
     live.remove(free_cube)
     begun.give_back(free_cube)
     bpy.context.view_layer.update()
-    assert state(free_cube) == before
+    assert lying_state(free_cube) == before
 
 
 @pytest.mark.parametrize("hand", ["free_push.FreePush", "free_hold.FreeHold"])

@@ -13,15 +13,9 @@ GONE = 3e-5
 
 
 @pytest.fixture
-def stacked(free_cube, colliders):
-    """Makes a second cube over the first, at rest; each rests on all of the collection."""
-    free_cube.location.z = 0.0255
-    other = free_cube.copy()
-    bpy.context.collection.objects.link(other)
-    other.location = (0.004, 0.0, 0.0760)
-    for one in (free_cube, other):
-        colliders.objects.link(one)
-    bpy.context.view_layer.update()
+def stacked(stack):
+    """A second cube over the first, at rest."""
+    other = stack()
     select(other)
     assert bpy.ops.palpate.settle() == {"FINISHED"}
     return other

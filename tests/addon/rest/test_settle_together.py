@@ -10,23 +10,6 @@ from soft_scene import body_of, error_of, layer_names, part, rest_places, seen_p
 WEIGHT_SHARE = 2e-5
 
 
-@pytest.fixture
-def stacked(free_cube, colliders):
-    """Makes a second cube over the first, which rests on all soft objects of the collection."""
-
-    def make(gap=0.0005):
-        free_cube.location.z = 0.0255
-        other = free_cube.copy()
-        bpy.context.collection.objects.link(other)
-        other.location = (0.004, 0.0, 0.0755 + gap)
-        for one in (free_cube, other):
-            colliders.objects.link(one)
-        bpy.context.view_layer.update()
-        return other
-
-    return make
-
-
 def settle(*things):
     """Settle as the operator does, and return where each lies."""
     act = part("operators.rest.settle").settle
@@ -37,8 +20,8 @@ def weight_of(thing):
     return thing.palpate.density * body_of(thing).inertia.volume * 9.81
 
 
-def test_two_cubes_come_to_rest_on_each_other_in_one_step(free_cube, stacked):
-    upper = stacked()
+def test_two_cubes_come_to_rest_on_each_other_in_one_step(free_cube, stack):
+    upper = stack()
     before = [one.matrix_world.copy() for one in (free_cube, upper)]
     select(upper)
     assert bpy.ops.palpate.settle() == {"FINISHED"}
@@ -54,8 +37,8 @@ def test_two_cubes_come_to_rest_on_each_other_in_one_step(free_cube, stacked):
     assert layer_names(free_cube) == layer_names(upper) == []
 
 
-def test_each_bears_what_lies_on_it(free_cube, stacked):
-    upper = stacked()
+def test_each_bears_what_lies_on_it(free_cube, stack):
+    upper = stack()
     upper.palpate.density *= 2.0
     lower_lies, upper_lies = settle(free_cube, upper)
     over, under = weight_of(upper), weight_of(free_cube)
@@ -65,8 +48,8 @@ def test_each_bears_what_lies_on_it(free_cube, stacked):
     np.testing.assert_allclose(lower_lies.rest.supports[0].force, [0, 0, -over - under], atol=limit)
 
 
-def test_a_pinned_object_bears_others_and_gives_way_where_it_is(free_cube, stacked):
-    upper = stacked()
+def test_a_pinned_object_bears_others_and_gives_way_where_it_is(free_cube, stack):
+    upper = stack()
     free_cube.palpate.pin_mode = "BELOW"
     select(free_cube)
     assert bpy.ops.palpate.update_pins() == {"FINISHED"}
@@ -95,8 +78,8 @@ def test_selected_ones_settle_together_and_rigid_colliders_bear_all(free_cube, b
         assert one.location.z == pytest.approx(0.325, abs=1e-3)
 
 
-def test_high_above_the_ground_the_way_down_is_left_out(free_cube, stacked):
-    upper = stacked()
+def test_high_above_the_ground_the_way_down_is_left_out(free_cube, stack):
+    upper = stack()
     for one in (free_cube, upper):
         one.location.z += 50.0
     bpy.context.view_layer.update()
@@ -105,8 +88,8 @@ def test_high_above_the_ground_the_way_down_is_left_out(free_cube, stacked):
     assert lying[0].rest.time < 5.0
 
 
-def test_one_that_cannot_move_leaves_all_where_they_are(free_cube, stacked):
-    upper = stacked()
+def test_one_that_cannot_move_leaves_all_where_they_are(free_cube, stack):
+    upper = stack()
     free_cube.keyframe_insert("location")
     select(upper)
     before = upper.matrix_world.copy()
