@@ -24,6 +24,8 @@ if sys.platform == "linux":
 ABOVE = (0.026, 0.024, 0.06)
 DEEP = (0.026, 0.024, 0.04)
 HAND_STIFFNESS = 500.0
+# After 12 ms without a tick the guardian says zero, by numbers that the servo passes over, us.
+GUARDED = 10_000.0
 
 
 @pytest.fixture
@@ -115,10 +117,21 @@ def test_softer_material_gives_way_while_the_servo_runs(loop, settled, press, ev
     assert soft["position"][2] < firm["position"][2] - 2e-4
 
 
+def uninterrupted(loop, eventually):
+    """A device and a servo that has stopped after a thousand forces, and was never held up by a
+    machine that is busy elsewhere: else they begin again, four times at most.
+    """
+    for _ in range(5):
+        device, servo = loop()
+        eventually(lambda servo=servo: servo.counters()["link"]["forces"] > 1000)
+        servo.stop()
+        if servo.counters()["longest_gap_us"] < GUARDED:
+            break
+    return device, servo
+
+
 def test_a_clean_link_loses_nothing(loop, eventually):
-    device, servo = loop()
-    eventually(lambda: servo.counters()["link"]["forces"] > 1000)
-    servo.stop()
+    device, servo = uninterrupted(loop, eventually)
     link, report = servo.counters()["link"], device.stop()
     assert [link[name] for name in ("duplicates", "out_of_order", "unknown", "oversize")] == [0] * 4
     assert (link["crc_errors"], link["cobs_errors"]) == (0, 0)
