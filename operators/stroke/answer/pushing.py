@@ -19,6 +19,12 @@ from .motion import Asked
 from .stroked import Stroked
 
 
+# It has slipped where its place goes less of its way than the first share, and its force leans aside
+# by more than 45 degrees, or where the place hardly goes at all. Either alone may be: a place goes
+# half the way where triangles are as large as the fingertip, and a limb that bends turns its side.
+LEAST_ALONG, HARDLY_ALONG, LEAST_STRAIGHT = 0.35, 0.1, 0.7
+
+
 @dataclass(frozen=True, eq=False)
 class Pushing:
     """Fingertips set down at their places, and the press of all of them."""
@@ -49,6 +55,21 @@ class Pushing:
     def reaches(self) -> bool:
         """Whether a fingertip gets to its place without being held off by what is beside it."""
         return self.fingertips.reach
+
+    def slips(self, asked: Asked, pushed: Stroked) -> bool:
+        """Whether the first fingertip has gone past its place, which bends or leans out of its way,
+        instead of taking it along; one that is led along the surface may.
+        """
+        if not asked.amount or (asked.by is not None and asked.by.any()):
+            return False
+        tips, (touch, *_) = self.fingertips, pushed.touches
+        grip = tips.grips[0]
+        centre = grip.centre(self.press.body.mesh)
+        (moved,) = tips.drawn.surface_displacements(pushed.displacements, centre[None])
+        along = -float(moved @ grip.normal) / asked.amount
+        straight = abs(float(touch.force @ grip.normal))
+        leans = straight < LEAST_STRAIGHT * float(np.linalg.norm(touch.force))
+        return along < (LEAST_ALONG if leans else HARDLY_ALONG)
 
     def to(self, asked: Asked, young_modulus: float) -> Stroked:
         """What fingertips do that have gone in and, with the surface, sideways.

@@ -35,8 +35,9 @@ class Stroke:
 
     A push is that of a fingertip, by the laws of contact: it only pushes. All else holds a patch
     of the surface (:mod:`....core.grip.held_patch`), and so does a push where no fingertip of this
-    size gets to the place, as between two limbs: it would press what is beside it. Both are made
-    when first asked for.
+    size gets to the place, as between two limbs: it would press what is beside it; or where it
+    would slip past a thin part, as an ear, that bends out of its way. Both are made when first
+    asked for.
 
     Attributes
     ----------
@@ -133,7 +134,9 @@ class Stroke:
 
     def _done(self, asked: Asked, *, inward: bool) -> Stroked:
         if inward and self._pushing.reaches:
-            return self._pushing.to(asked, self.young_modulus)
+            pushed = self._pushing.to(asked, self.young_modulus)
+            if not self._pushing.slips(asked, pushed):
+                return pushed
         answer = self._held.answer(asked.shares(self.grips[0].normal), self.young_modulus)
         force = float(np.linalg.norm(answer.force))
         loads = held_loads(self.drawn.body, answer.nodes, answer.forces)

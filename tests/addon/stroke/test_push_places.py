@@ -71,3 +71,36 @@ def test_a_place_that_no_fingertip_gets_to_is_pushed_itself(slotted):
     assert shift[floor, 2] < -0.0015
     # The jaws close over it; a fingertip would press down their rims, which it met first.
     assert shift[rest[:, 2] > HALF - 0.001, 2].min() > -0.0015
+
+
+@pytest.fixture
+def ear(palpate) -> bpy.types.Object:
+    """A strip that stands on a block, thin across x, with slanting rims."""
+    shape = bmesh.new()
+    bmesh.ops.create_cube(shape, size=1.0)
+    bmesh.ops.scale(shape, verts=shape.verts[:], vec=(0.03, 0.03, 0.01))
+    outline = [(-0.002, -0.004), (0.002, -0.008), (0.002, 0.004), (-0.002, 0.008)]
+    face = shape.faces.new([shape.verts.new((x, y, 0.0)) for x, y in outline])
+    extruded = bmesh.ops.extrude_face_region(shape, geom=[face])["geom"]
+    moving = [one for one in extruded if isinstance(one, bmesh.types.BMVert)]
+    bmesh.ops.translate(shape, verts=moving, vec=(0.0, 0.0, 0.045))
+    bmesh.ops.recalc_face_normals(shape, faces=shape.faces[:])
+    bmesh.ops.triangulate(shape, faces=shape.faces[:])
+    bmesh.ops.subdivide_edges(shape, edges=shape.edges[:], cuts=5, use_grid_fill=True)
+    mesh = bpy.data.meshes.new("Ear")
+    shape.to_mesh(mesh)
+    shape.free()
+    vertices = [vertex.co[:] for vertex in mesh.vertices]
+    thing = mesh_object(vertices, [polygon.vertices[:] for polygon in mesh.polygons], "Ear")
+    assert bpy.ops.palpate.make_soft() == {"FINISHED"}
+    return thing
+
+
+def test_an_ear_that_bends_out_of_the_way_is_taken_along(ear):
+    place, depth = np.array([-0.002, 0.008, 0.04]), 0.014
+    bpy.ops.palpate.stroke(motion="PUSH", place=place, radius=0.005, depth=depth)
+    fine = ear.palpate.carrier or ear
+    rest, shift = rest_places(fine), moved(ear, "Press 1")
+    here = np.argmin(np.linalg.norm(rest - place, axis=1))
+    # A fingertip slips past its sharp rim, which goes a tenth of its way.
+    assert -shift[here, 1] > 0.5 * depth
