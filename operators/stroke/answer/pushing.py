@@ -18,10 +18,10 @@ from .fingertips import Fingertips
 from .motion import Asked
 from .stroked import Stroked
 
-
-# It has slipped where its place goes less of its way than the first share, and its force leans aside
-# by more than 45 degrees, or where the place hardly goes at all. Either alone may be: a place goes
-# half the way where triangles are as large as the fingertip, and a limb that bends turns its side.
+# It has slipped where its place goes less of its way than the first share, and its force leans
+# aside by more than 45 degrees, or where the place hardly goes at all. Either alone may be: a place
+# goes half the way where triangles are as large as the fingertip, and a limb that bends turns its
+# side to it.
 LEAST_ALONG, HARDLY_ALONG, LEAST_STRAIGHT = 0.35, 0.1, 0.7
 
 
