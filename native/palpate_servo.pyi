@@ -383,6 +383,12 @@ class Snapshot(FingerSnapshot):
         """The same of each other body that it presses, in the order of their pile."""
 
     @property
+    def other_loads(self) -> list[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+        """Of each of these nodes (k,) of the surface and forces on them (k, 3), N in its own axes,
+        under which it looks as it does.
+        """
+
+    @property
     def remembered_nodes(self) -> NDArray[np.int64]:
         """Nodes (k,) of the surface that remember a force, where the body gives way with time."""
 
@@ -590,10 +596,13 @@ class PileContacts(TypedDict):
 
 FreeMember: TypeAlias = tuple[float, _Vector, _Matrix, float]
 """Mass, centre of mass, moments of inertia about it, drag time."""
-Member: TypeAlias = tuple[ToolSurface, float, FreeMember | None, _Vector, _Matrix]
-"""A body of a pile: contact points, Young's modulus, how it moves if it does, its placement."""
-RigidTool: TypeAlias = tuple[Tool, _Vector, _Matrix, float]
-"""A tool, its pose in the world, the coefficient of friction."""
+Member: TypeAlias = tuple[
+    ToolSurface, ToolSurface | None, float, FreeMember | None, _Vector, _Matrix
+]
+"""A body of a pile: contact points, those of hands if they are others, Young's modulus, how it
+moves if it does, its placement."""
+RigidTool: TypeAlias = tuple[Tool, _Vector, _Matrix, float, bool]
+"""A tool, its pose in the world, the coefficient of friction, whether a hand leads it."""
 
 @final
 class Pile:
@@ -1167,6 +1176,8 @@ def stop_all() -> None:
 
 MAX_FINGERS: int
 """Fingers of a servo at most."""
+MOST_BODIES: int
+"""Bodies in a servo that press each other at most."""
 MOST_SUPPORTS: int
 """Supports that can bear a body."""
 STATES: tuple[str, ...]

@@ -55,7 +55,7 @@ operators/tool
 operators/device
 operators/record
 operators/shape
-operators/lying
+operators/lying operators/lying/pressed
 operators/session
 operators/rest
 operators/bake

@@ -66,6 +66,7 @@ def two(cube: SoftBody, *tools: Pose) -> Pile:
         [(cube, place) for place in places],
         [Floor(friction=0.0, up=tuple(up)) for up in np.eye(3)],
         [(TIP, pose) for pose in tools],
+        fingertips=[TIP],
         settings=PileSettings(friction=0.0, gravity=INTO_CORNER, spacing=SPACING),
     )
 

@@ -90,7 +90,8 @@ def servo_costs(body: SoftBody, friction: float, goals: list[Pose]) -> np.ndarra
     settings = PileSettings(friction=friction)
     size = float(np.ptp(body.mesh.nodes[:, 2]))
     upper, lower = Pose.at([0.0, 0.0, size + 2.0 * ABOVE]), Pose.at([0.0, 0.0, ABOVE])
-    pile = Pile([(body, upper), (body, lower)], [Floor(friction=friction)], settings=settings)
+    laid = [(body, upper), (body, lower)]
+    pile = Pile(laid, [Floor(friction=friction)], fingertips=[TIP], settings=settings)
     feel = Settings(body.young_modulus, static_friction=friction, dynamic_friction=friction)
     start = goals[0].position
     fingers = SteppedFingers(pile.native_body, start[None], feel, prop=pile.laid())

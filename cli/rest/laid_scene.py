@@ -26,9 +26,9 @@ def laid_scene(arguments: argparse.Namespace, fingers: int) -> LaidBody:
             f"{arguments.body}: it has {len(scene.tools)} tools for {fingers} devices; bodies that "
             "press each other are pressed by tools, so give each device one in 'tools'"
         )
-    pile = scene.untouched()
+    tools = tuple(tool for tool, _ in scene.tools[:fingers])
+    pile = scene.untouched(tools)
     # What a servo does not take is refused before all comes to rest, which may take long.
     pile.laid()
     first = pile.settle()[0]
-    tools = tuple(tool for tool, _ in scene.tools[:fingers])
     return LaidBody(first.body, pile.native_body, first.placement, pile.laid(), tools)

@@ -54,9 +54,11 @@ class Scene:
     ways: tuple[tuple[float, float, float], ...]
     settings: PileSettings
 
-    def untouched(self) -> Pile:
-        """The bodies as the file places them, without its tools."""
-        return Pile(self.bodies, self.supports, settings=self.settings)
+    def untouched(self, fingertips: Sequence[Tool] = ()) -> Pile:
+        """The bodies as the file places them, without its tools; ``fingertips`` of a servo will
+        press them.
+        """
+        return Pile(self.bodies, self.supports, fingertips=fingertips, settings=self.settings)
 
     def pile(self, placements: Sequence[Pose] | None = None, more: Sequence[Led] = ()) -> Pile:
         """The bodies as the file places them, or elsewhere; pressed by more tools than its own."""

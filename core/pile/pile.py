@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..contact.touches import ToolTouch
 from ..errors import PalpateError
-from ..rest.bearing_points import bearing_points
+from ..rest.bearing_points import bearing_points, pressing_points
 from ..rest.prop import at
 from ..rest.refusals import one_goal_each, rest_errors
 from ..rest.rest import Rest
@@ -54,7 +55,10 @@ class Pile:
     bodies : each with the placement of its frame in the world; a free one with a density moves, a
         pinned one is held where it is.
     supports : what they may rest on.
-    tools : what may press them, with their poses in the world, outside of all bodies.
+    tools : what may press them, with their poses in the world, outside of all bodies. The body
+        that is nearest to one then has contact points as close as it asks for.
+    fingertips : tools of a servo's fingers, which press them besides (:meth:`laid`); the same of
+        the first body.
 
     Raises
     ------
@@ -68,6 +72,7 @@ class Pile:
         supports: Sequence[Floor | Support] = (),
         tools: Sequence[tuple[Tool, Pose]] = (),
         *,
+        fingertips: Sequence[Tool] = (),
         settings: PileSettings = USUAL_PILE,
     ) -> None:
         if not 1 <= len(bodies) <= MOST_BODIES:
@@ -82,23 +87,23 @@ class Pile:
         friction_checked(settings.friction)
         friction_checked(by_tools)
         self.bodies = tuple(body for body, _ in bodies)
-        self._points: list[ContactPoints] = []
-        natives: dict[int, tuple[Body, ToolSurface]] = {}
+        hands = [(_nearest(bodies, pose), tool) for tool, pose in tools]
+        hands += [(self.bodies[0], tool) for tool in fingertips]
+        touched: dict[SoftBody, _Touched] = {}
         laid = []
         for body, placement in bodies:
-            points, near = bearing_points(body, settings.spacing)
-            if id(body) not in natives:
-                native = native_body(body, whole=True, may_move=True)
-                natives[id(body)] = native, native_surface(native, points, near)
-            self._points.append(points)
+            if body not in touched:
+                own = [tool for nearest, tool in hands if nearest is body]
+                touched[body] = _Touched.of(body, own, settings.spacing)
             free = None
             if body.is_free:
                 free = body.mass, body.inertia.centre, body.moments, settings.drag_time
-            _, surface = natives[id(body)]
-            laid.append((surface, body.modulus(None), free, *at(placement)))
-        self.native_body, _ = natives[id(self.bodies[0])]
+            points = touched[body].surface, touched[body].by_hands
+            laid.append((*points, body.modulus(None), free, *at(placement)))
+        self._points = [touched[body].points for body in self.bodies]
+        self.native_body = touched[self.bodies[0]].native
         rigid = [
-            *((native_shape(tool), *at(pose), by_tools) for tool, pose in tools),
+            *((native_shape(tool), *at(pose), by_tools, True) for tool, pose in tools),
             *(_rigid(support, self._size()) for support in supports),
         ]
         self._tools = tuple(tool for tool, _ in tools)
@@ -252,4 +257,41 @@ class Pile:
 
 def _rigid(support: Floor | Support, size: float) -> RigidTool:
     tool = NativeTool.endless(size) if isinstance(support, Floor) else native_shape(support.tool)
-    return tool, *at(support.pose), support.friction
+    return tool, *at(support.pose), support.friction, False
+
+
+def _nearest(bodies: Sequence[tuple[SoftBody, Pose]], pose: Pose) -> SoftBody:
+    """The body with the surface node nearest to where a tool is."""
+
+    def away(body: SoftBody, placement: Pose) -> float:
+        nodes = body.mesh.nodes[body.mesh.surface_nodes]
+        return float(np.linalg.norm(placement.to_world(nodes) - pose.position, axis=1).min())
+
+    return min(bodies, key=lambda one: away(*one))[0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Touched:
+    """Where a body can be touched: at ``points`` of its ``surface``, and behind these at those of
+    hands, where they ask for closer ones.
+    """
+
+    native: Body
+    points: ContactPoints
+    surface: ToolSurface
+    by_hands: ToolSurface | None
+
+    @classmethod
+    def of(cls, body: SoftBody, hands: Sequence[Tool], spacing: float | None) -> _Touched:
+        """Points as close as the ``hands`` with the smallest tool ask for."""
+        native = native_body(body, whole=True, may_move=True)
+        points, near = bearing_points(body, spacing)
+        surface = native_surface(native, points, near)
+        smallest = min(hands, key=lambda tool: tool.spacing, default=None)
+        if smallest is None:
+            return cls(native, points, surface, None)
+        closer, near = pressing_points(body, smallest, spacing)
+        if closer is points:
+            return cls(native, points, surface, None)
+        by_hands = native_surface(native, closer, near)
+        return cls(native, points.followed_by(closer), surface, by_hands)

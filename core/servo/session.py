@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 from palpate_servo import (
+    MOST_BODIES,
     STATES,
     Body,
     FingerSnapshot,
@@ -37,6 +38,7 @@ from .settings import Settings
 LEAST_HZ, MOST_HZ = 100, 8000
 
 __all__ = [
+    "MOST_BODIES",
     "STATES",
     "Body",
     "FingerSnapshot",

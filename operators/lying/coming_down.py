@@ -9,11 +9,13 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.body.soft_body import SoftBody
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
 from ...core.rest.rest import Rest
+from ...core.servo.session import Body, Prop
 from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from . import rest_layer
@@ -51,6 +53,17 @@ class Alone:
     def young_modulus(self) -> float:
         """Pascal."""
         return self.free.resting.young_modulus
+
+    @property
+    def bodies(self) -> tuple[SoftBody]:
+        """It, at its object's density."""
+        return (self.free.resting.body,)
+
+    @property
+    def native(self) -> tuple[Body, Prop]:
+        """The body as a servo has it, and as it is laid down there."""
+        resting = self.free.resting
+        return resting.native_body, resting.laid()
 
     @property
     def placements(self) -> list[Pose]:
@@ -172,8 +185,11 @@ def lying_bodies(
     opened: Sequence[DrawnBody],
     graph: bpy.types.Depsgraph,
     height: float,
+    *,
+    fingertips: Sequence[Tool] | None = None,
 ) -> Alone | FreePile:
-    """The same of bodies that are open.
+    """The same of bodies that are open; those for a servo, whose ``fingertips`` are told, are
+    touched at no more points than it has time for.
 
     Raises
     ------
@@ -184,9 +200,9 @@ def lying_bodies(
         if thing.palpate.pin_mode == "NONE":
             refuse_played(thing)
     if len(things) > 1:
-        return piled(things, opened, graph, height)
+        return piled(things, opened, graph, height, fingertips or ())
     (thing,), (drawn,) = things, opened
-    free = lie(thing, drawn, supports_under(thing, drawn, graph))
+    free = lie(thing, drawn, supports_under(thing, drawn, graph), for_servo=fingertips is not None)
     free.drop(height * drawn.size)
     return Alone(free)
 

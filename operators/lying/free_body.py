@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import bpy
 import numpy as np
@@ -34,8 +35,8 @@ Array = NDArray[np.float64]
 # Share of its size over what bears it at which a body that falls is looked at again.
 LANDING = 0.05
 
-# The body opened last, at another density than its file tells, and as it was.
-_weighed: tuple[SoftBody, SoftBody] | None = None
+# Of each body the one at other constants than its file tells: much is kept with that.
+_chosen: WeakKeyDictionary[SoftBody, SoftBody] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +167,7 @@ def lie(
         Too many tools or colliders.
     """
     chosen = thing.palpate
-    body = _at_density(drawn.body, chosen.density)
+    body = chosen_body(drawn.body, chosen.density)
     settings = RestSettings(
         young_modulus=chosen.young_modulus,
         friction=chosen.static_friction,
@@ -239,20 +240,15 @@ def _refusal(thing: bpy.types.Object) -> PalpateError | None:
     return None
 
 
-def _at_density(body: SoftBody, density: float) -> SoftBody:
-    """The body of this density, kg/m3; the same one each time, as much is kept with it."""
-    global _weighed  # noqa: PLW0603  one cached body
-    if body.density == density:
-        return body
-    if _weighed is None or _weighed[0] is not body or _weighed[1].density != density:
-        _weighed = body, replace(body, density=density)
-    return _weighed[1]
-
-
-def forget() -> None:
-    """Free the memory."""
-    global _weighed  # noqa: PLW0603  see _at_density
-    _weighed = None
+def chosen_body(body: SoftBody, density: float, young_modulus: float | None = None) -> SoftBody:
+    """The body of this density, kg/m3, and perhaps Young's modulus, Pa; the same one each time."""
+    young = body.young_modulus if young_modulus is None else young_modulus
+    wanted = density, young
+    for one in (body, _chosen.get(body)):
+        if one is not None and (one.density, one.young_modulus) == wanted:
+            return one
+    _chosen[body] = replace(body, density=density, young_modulus=young)
+    return _chosen[body]
 
 
 def above(

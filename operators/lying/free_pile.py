@@ -20,8 +20,9 @@ from ...core.pile.pile import Pile
 from ...core.pile.pile_settings import PileSettings
 from ...core.rest.rest import Rest
 from ...core.rest.support import Floor, Support
+from ...core.servo.session import Body, PropAmong
 from ..object.drawn_body import DrawnBody
-from .free_body import Lying, above, scene_gravity, supports_under
+from .free_body import Lying, above, chosen_body, scene_gravity, supports_under
 from .placement import frame_at, placement_of
 from .supports import Supports
 
@@ -35,12 +36,13 @@ class FreePile:
     drawn : the bodies, and their objects as they were at first.
     supports : what all rest on.
     pile : their equilibrium.
+    bodies : the same at the objects' densities and Young's moduli.
     """
 
     drawn: tuple[DrawnBody, ...]
     supports: Supports
     pile: Pile
-    _bodies: tuple[SoftBody, ...]
+    bodies: tuple[SoftBody, ...]
     _settings: PileSettings
 
     @property
@@ -61,7 +63,18 @@ class FreePile:
     @property
     def young_modulus(self) -> float:
         """Of the first one, pascal."""
-        return self._bodies[0].young_modulus
+        return self.bodies[0].young_modulus
+
+    @property
+    def native(self) -> tuple[Body, PropAmong]:
+        """The first one as a servo has it, and as it is laid down among the others there.
+
+        Raises
+        ------
+        PalpateError
+            It is pinned, or they are more than a servo takes.
+        """
+        return self.pile.native_body, self.pile.laid()
 
     @property
     def placements(self) -> list[Pose]:
@@ -84,7 +97,7 @@ class FreePile:
         """
         borne = self.supports if supports is None else supports
         here = self.placements if placements is None else placements
-        laid = list(zip(self._bodies, here, strict=True))
+        laid = list(zip(self.bodies, here, strict=True))
         pile = Pile(laid, borne.all, tools, settings=self._settings)
         pile.come_in()
         return replace(self, supports=borne, pile=pile)
@@ -155,9 +168,11 @@ def piled(
     opened: Sequence[DrawnBody],
     graph: bpy.types.Depsgraph,
     height: float | None = None,
+    fingertips: Sequence[Tool] = (),
 ) -> FreePile:
     """Bodies of objects where these are, with the floor and colliders of all; where nothing is
     near beneath, down at a ``height`` over it, a share of the smallest one's size, if there is one.
+    ``fingertips`` are those of a servo which will press them.
 
     Friction between them is the first one's, and so is that of tools; the floor the lowest of
     theirs.
@@ -183,14 +198,13 @@ def piled(
             placement = replace(placement, position=placement.position - [0.0, 0.0, down])
         placements.append(placement)
         chosen = thing.palpate
-        bodies.append(
-            replace(drawn.body, young_modulus=chosen.young_modulus, density=chosen.density)
-        )
+        bodies.append(chosen_body(drawn.body, chosen.density, chosen.young_modulus))
     first = things[0].palpate
     settings = PileSettings(
         friction=first.rest_friction, tool_friction=first.static_friction, gravity=gravity
     )
-    pile = Pile(list(zip(bodies, placements, strict=True)), supports.all, settings=settings)
+    laid = list(zip(bodies, placements, strict=True))
+    pile = Pile(laid, supports.all, fingertips=fingertips, settings=settings)
     pile.come_in()
     return FreePile(tuple(opened), supports, pile, tuple(bodies), settings)
 

@@ -31,7 +31,7 @@ from ...simulated.simulated_process import SimulatedDevice
 from ..device import device_source
 from ..device.device_source import DeviceFrame
 from ..device.loop_figures import LoopFigures
-from ..lying.pressed_prop import PressedProp
+from ..lying.pressed.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..record import recording
 from ..record.recording import Recorder

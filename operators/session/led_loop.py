@@ -13,7 +13,7 @@ from ...core.sentence import Sentence
 from ...core.servo.session import FingerSnapshot, Snapshot
 from ..device import device_source
 from ..device.device_source import DeviceFrame
-from ..lying.pressed_prop import PressedProp
+from ..lying.pressed.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..record import recording_writer
 from ..scene.body_frame import BodyFrame, as_point

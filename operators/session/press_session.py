@@ -19,7 +19,7 @@ from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ..device import servo_words
 from ..layer import live_layer, place_marks
-from ..lying.pressed_prop import PressedProp
+from ..lying.pressed.pressed_prop import PressedProp
 from ..object.drawn_body import open_body
 from ..record.recording import Recorder
 from ..scene.object_handle import ObjectHandle
@@ -209,8 +209,9 @@ class PressSession(PressedObject):
         reason = reason_to_end(thing, self.drawn, withdrawn=self.state.withdrawn)
         if thing is not None and not reason and not self.follow_frame(thing):
             reason = "{name} was scaled; press Make Soft to bake it again"
-        if reason:
-            self.post(GiveWay(Sentence(reason, name=(thing or self.handle).name)))
+        reasons = [Sentence(reason, name=(thing or self.handle).name), *self.others_that_end()]
+        if any(reasons):
+            self.post(GiveWay(next(filter(None, reasons))))
             return None
         return thing
 
@@ -271,9 +272,9 @@ def begin(
         raise PalpateError("{name} is being pressed; end that first (Escape)", name=busy)
     leads = BOTH_POINTER if pinch else leads_of(scene, source)
     drawn = open_body(thing, scene)
-    prop = PressedProp.begin(thing, drawn)
-    drawn = drawn if prop is None else prop.drawn
     tip = chosen_tip(scene, thing, drawn.size)
+    prop = PressedProp.begin(thing, drawn, tip.tool, bpy.context.selected_objects)
+    drawn = drawn if prop is None else prop.drawn
     homes = homes_of(thing, scene, drawn.frame, leads)
     session = PressSession(ObjectHandle.of(thing), scene.name, drawn, homes, leads, prop, tip=tip)
     session.places = (None,) * len(leads)

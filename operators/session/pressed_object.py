@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import PalpateError
+from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ..device.device_source import DeviceFrame
 from ..layer import layers, live_layer, place_marks
-from ..lying.pressed_prop import PressedProp
+from ..lying.pressed.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..place import touched_place
 from ..place.touched_place import TouchedPlace
@@ -141,6 +142,18 @@ class PressedObject:
         free = free_places(self.leads, self.snapshot, self.frames)
         self.places = places_along(thing, moved.frame, self.places, free)
         return True
+
+    def others_that_end(self) -> list[str]:
+        """Of each object that moves with it the reason why the press cannot continue; empty if it
+        can.
+        """
+        others = () if self.prop is None else self.prop.others
+        # What shows them is no live layer.
+        reasons = (reason_to_end(one.handle.find(), one.drawn, withdrawn=True) for one in others)
+        return [
+            Sentence(reason, name=one.handle.name)
+            for one, reason in zip(others, reasons, strict=True)
+        ]
 
     def as_seen(self, thing: bpy.types.Object, snapshot: Snapshot, *, withdrawn: bool) -> Snapshot:
         """A tick as the body sees it, and the object where that left it."""

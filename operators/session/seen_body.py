@@ -19,7 +19,7 @@ from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
 from ..imprint.surface_imprint import SurfaceImprint, yielding_of
 from ..layer import live_layer
-from ..lying.pressed_prop import PressedProp
+from ..lying.pressed.pressed_prop import PressedProp
 from ..object.baked_settings import law_of_object
 from ..object.drawn_body import DrawnBody
 from ..shape.drawn_shape import DrawnShape, chosen_shape, loads_of

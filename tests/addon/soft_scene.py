@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -135,6 +135,29 @@ def wait(session: Any, condition: Callable[[], bool], seconds: float = 60.0) -> 
             return
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.005)
+
+
+def lead(session: Any, states: ModuleType, start: Sequence[float], by: Sequence[float]) -> None:
+    """Set the finger down and lead it by a way, and wait until all is at rest."""
+    session.post(states.SetDown(start, 0))
+    session.tick()
+    end = tuple(np.add(start, by))
+    session.post(states.Move(end, 0))
+    at_rest(session, end)
+
+
+def at_rest(session: Any, end: tuple[float, ...]) -> None:
+    """Wait until the finger is there and nothing moves."""
+    before: list[Any] = []
+
+    def is_quiet():
+        place, _ = session.loop.servo.snapshot().placement
+        finger = session.loop.servo.snapshot().fingers[0]
+        before.append(np.concatenate([place, finger.contact_force]))
+        arrived = np.allclose(finger.probe, end, atol=1e-6)
+        return arrived and len(before) > 20 and np.ptp(before[-20:], axis=0).max() < 1e-5
+
+    wait(session, is_quiet)
 
 
 def begin_pressed(sessions: ModuleType, states: ModuleType, thing: bpy.types.Object) -> Any:

@@ -70,6 +70,16 @@ class ContactPoints:
     def __len__(self) -> int:
         return len(self.positions)
 
+    def followed_by(self, others: ContactPoints) -> ContactPoints:
+        """These points and ``others`` behind them."""
+        return ContactPoints(
+            np.concatenate([self.positions, others.positions]),
+            np.concatenate([self.normals, others.normals]),
+            np.concatenate([self.triangles, others.triangles]),
+            np.concatenate([self.alphas, others.alphas]),
+            np.concatenate([self.areas, others.areas]),
+        )
+
     def taken(self, chosen: NDArray[np.int64] | NDArray[np.bool_]) -> ContactPoints:
         """The ``chosen`` points, by number or mask (P,), with their areas."""
         return ContactPoints(

@@ -2,21 +2,27 @@
 
 use glam::{DMat3, DVec3};
 
-use super::contact::{Against, Contact};
+use super::contact::{Against, Contact, MOST_SHARES};
 use super::obstacle::Rigid;
 use super::piled::Pile;
+use crate::algebra::MOST_IN_TICK;
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
+use crate::contact::ground::MOST_SUPPORTS;
 use crate::engine::joint::{AllLed, Led};
+use crate::rest::borne::MOST_BORNE;
 use crate::rest::placement::Placement;
 use crate::tool::collider::side::is_outside;
 use crate::tool::collider::{Collider, Felt};
 use crate::tool::complementarity::stiffness::with_stuck;
 use crate::tool::shape::Pose;
-use crate::tool::slot::Slot;
+use crate::tool::slot::{MOST_NODES, Slot};
 
 /// The body that tools are made for.
 const TOUCHED: usize = 0;
+// All contacts that press may be on one body.
+const _: () = assert!(3 * MOST_SHARES * MOST_IN_TICK <= MOST_BORNE);
+const _: () = assert!(MOST_SUPPORTS * MOST_NODES <= MOST_BORNE);
 
 /// A body, the first of a pile, among the others.
 #[derive(Debug)]
@@ -49,7 +55,7 @@ impl Among {
 
     /// The body that tools are made for.
     pub fn body(&self) -> &std::sync::Arc<Body> {
-        self.pile.members[TOUCHED].surface.body()
+        self.pile.members[TOUCHED].touchable.own().body()
     }
 
     /// Where that is.
@@ -76,19 +82,25 @@ impl Among {
         held.map(|contact| self.held(contact)).sum::<f64>() - raised.sum::<f64>()
     }
 
-    /// Forces on the nodes of the touched body, N in its axes, of all but fingers.
-    pub fn borne(&self) -> impl Iterator<Item = (u32, DVec3)> + '_ {
-        let member = &self.pile.members[TOUCHED];
+    /// How many bodies there are, the touched one among them.
+    pub fn count(&self) -> usize {
+        self.pile.members.len()
+    }
+
+    /// Forces on the nodes of a body, N in its axes: of the touched one, 0, those of all but fingers.
+    pub fn borne(&self, body: usize) -> impl Iterator<Item = (u32, DVec3)> + '_ {
+        let member = &self.pile.members[body];
         let turn = member.placement.rotation.inverse();
-        let bears = |contact: &&Contact| {
-            contact.push > 0.0 && !matches!(contact.against, Against::Finger(_))
+        let bears = move |contact: &&Contact| {
+            let by_finger = matches!(contact.against, Against::Finger(_));
+            contact.push > 0.0 && !(by_finger && body == TOUCHED)
         };
         let contacts = self.pile.contacts().iter().filter(bears);
         contacts.flat_map(move |contact| {
-            let force = turn * contact.force() * contact.sign_on(TOUCHED);
-            let shares = contact.shares_on(TOUCHED).iter();
+            let force = turn * contact.force() * contact.sign_on(body);
+            let shares = contact.shares_on(body).iter();
             shares.flat_map(move |&(point, share)| {
-                let at = &member.surface.points()[point as usize];
+                let at = member.touchable.point(point);
                 let nodes = at.nodes.into_iter().zip(at.alpha);
                 nodes.map(move |(node, weight)| (node, force * (share * weight)))
             })
@@ -157,7 +169,7 @@ impl Among {
         };
         (self.pile.members[TOUCHED + 1..].iter()).all(|member| {
             let pose = member.placement.to_body(&pose);
-            is_outside(&member.surface, collider.tool(), &pose)
+            is_outside(member.touchable.of(true).0, collider.tool(), &pose)
         })
     }
 
@@ -280,5 +292,6 @@ fn rigid_of<'a>(led: &'a Led<'_>, placement: &Placement) -> Option<Rigid<'a>> {
         pose: placement.pose_to_world(&posed.pose),
         friction: posed.friction,
         presence: led.presence,
+        is_hand: true,
     })
 }

@@ -22,7 +22,7 @@ const BESIDE: f64 = 0.25;
 /// Of two bodies the one whose points meet the other's surface: the one with the finer points, the
 /// first of two alike.
 fn finer(members: &[Member], first: usize, second: usize) -> [usize; 2] {
-    let [a, b] = [first, second].map(|body| members[body].surface.spacing());
+    let [a, b] = [first, second].map(|body| members[body].touchable.own().spacing());
     if b < a * (1.0 - 1e-9) {
         [second, first]
     } else {
@@ -72,7 +72,8 @@ impl Meeting {
     ) {
         self.found.clear();
         let stays = |contact: &Contact| {
-            let margin = FORGOTTEN * MARGIN * members[contact.body].surface.spacing();
+            let margin =
+                FORGOTTEN * MARGIN * members[contact.body].touchable.spacing(contact.point);
             contact.push > 0.0 || contact.gap <= margin
         };
         // Those that stay need not be found.
@@ -111,22 +112,23 @@ impl Meeting {
         rigid: &Rigid<'_>,
     ) {
         let pose = member.placement.to_body(&rigid.pose);
-        let margin = MARGIN * member.surface.spacing();
+        let (surface, first) = member.touchable.of(rigid.is_hand);
+        let margin = MARGIN * surface.spacing();
         let is_near = |middle: DVec3, radius| {
             rigid.tool.least_distance(pose.to_tool(middle)) <= margin + radius
         };
-        member.surface.tree().visit(is_near, |point| {
-            let at = member.surface.points()[point as usize].position;
+        surface.tree().visit(is_near, |point| {
+            let at = surface.points()[point as usize].position;
             if rigid.tool.distance(pose.to_tool(at)).0 <= margin {
-                self.offer((body, point, against));
+                self.offer((body, first + point, against));
             }
         });
     }
 
     fn near_body(&mut self, members: &[Member], [body, other]: [usize; 2]) {
         let (member, against) = (&members[body], &members[other]);
-        let margin = MARGIN * member.surface.spacing();
-        let beside = BESIDE * member.surface.spacing();
+        let margin = MARGIN * member.touchable.own().spacing();
+        let beside = BESIDE * member.touchable.own().spacing();
         let (middle, reach) = against.around;
         let middle = member
             .placement
@@ -136,8 +138,8 @@ impl Meeting {
         }
         let is_near = |ball: DVec3, radius| ball.distance(middle) <= reach + radius + margin;
         let mut triangle = 0;
-        member.surface.tree().visit(is_near, |point| {
-            let at = &member.surface.points()[point as usize];
+        member.touchable.own().tree().visit(is_near, |point| {
+            let at = &member.touchable.own().points()[point as usize];
             let place = (against.placement).place_to_body(member.placement.to_world(at.position));
             let is_known = self.staying.contains(&(body, point, Against::Body(other)));
             if is_known || !against.is_around(place, margin) {
@@ -175,11 +177,11 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_
             let given: DVec3 = given
                 .map(|&(point, share)| other.moved(point) * share)
                 .sum();
-            let at = &member.surface.points()[contact.point as usize];
+            let at = member.touchable.point(contact.point);
             let facing = member.placement.rotation * at.normal;
             let facing = other.placement.direction_to_body(facing);
             contact.place = other.placement.place_to_body(place) - given;
-            let beside = BESIDE * member.surface.spacing();
+            let beside = BESIDE * member.touchable.own().spacing();
             match met(
                 other.body(),
                 contact.place,
@@ -207,7 +209,7 @@ pub(super) fn choose(
     room: usize,
 ) {
     let is_near = |contact: &Contact| {
-        let watched = WATCHED * members[contact.body].surface.spacing();
+        let watched = WATCHED * members[contact.body].touchable.spacing(contact.point);
         contact.gap.is_finite() && (contact.push > 0.0 || contact.gap <= watched)
     };
     chosen.clear();
@@ -233,6 +235,6 @@ pub(super) fn share_out(contact: &mut Contact, members: &[Member]) {
     if let Against::Body(number) = contact.against {
         let other = &members[number];
         let normal = other.placement.direction_to_body(contact.normal);
-        contact.shares = shares(&other.surface, contact.place, normal);
+        contact.shares = shares(other.touchable.own(), contact.place, normal);
     }
 }

@@ -14,19 +14,21 @@ use crate::creep::step::Step;
 use crate::rest::free_body::FreeBody;
 use crate::rest::placement::Placement;
 use crate::tool::patch::Patch;
-use crate::tool::points::ToolSurface;
+use crate::tool::points::touchable::Touchable;
 use crate::tool::slot::Slot;
 
 /// No slot: the point is not looked at.
 const NONE: u32 = u32::MAX;
-/// All slots of a patch are of this one number of a tool and body: what presses them is told by contacts.
-const ALL: [u8; 2] = [0, 0];
+/// Slots of a patch are of these numbers of a tool and body, by whose points they are: what presses
+/// them is told by contacts.
+const OWN: [u8; 2] = [0, 0];
+const OF_HANDS: [u8; 2] = [1, 0];
 
 /// A body of the pile.
 #[derive(Debug, Clone)]
 pub struct Member {
     /// Where it can be touched.
-    pub surface: Arc<ToolSurface>,
+    pub touchable: Touchable,
     /// Pa.
     pub young_modulus: f64,
     /// Its mass and drag; none for one that is held.
@@ -53,24 +55,25 @@ pub struct Member {
 impl Member {
     /// A body that nothing presses yet.
     pub fn new(
-        surface: Arc<ToolSurface>,
+        touchable: Touchable,
         young_modulus: f64,
         free: Option<FreeBody>,
         placement: Placement,
     ) -> Self {
-        let nodes = &surface.body().nodes;
+        let count = touchable.count();
+        let nodes = &touchable.own().body().nodes;
         let low = nodes.iter().fold(DVec3::INFINITY, |low, &at| low.min(at));
         let high = (nodes.iter()).fold(DVec3::NEG_INFINITY, |high, &at| high.max(at));
         let middle = (low + high) * 0.5;
         let reach = (nodes.iter()).fold(0.0_f64, |most, at| most.max(at.distance(middle)));
         Self {
-            slot_of: vec![NONE; surface.points().len()],
+            slot_of: vec![NONE; count],
             wanted: Vec::with_capacity(MOST_POINTS),
-            wanted_in: vec![0; surface.points().len()],
+            wanted_in: vec![0; count],
             turn: 0,
             mobility: None,
             motion: Motion::default(),
-            surface,
+            touchable,
             young_modulus,
             free,
             placement,
@@ -84,7 +87,13 @@ impl Member {
     /// The body itself.
     #[inline]
     pub fn body(&self) -> &Body {
-        self.surface.body()
+        self.touchable.own().body()
+    }
+
+    /// The contact point of a slot.
+    #[inline]
+    fn point_of(&self, slot: &Slot) -> u32 {
+        self.touchable.of(slot.tool == OF_HANDS[0]).1 + slot.point
     }
 
     /// Whether a place of its frame is within `margin` m of its outline.
@@ -116,7 +125,7 @@ impl Member {
     /// Where a contact point is in the world, m.
     #[inline]
     pub fn place(&self, point: u32) -> DVec3 {
-        let at = self.surface.points()[point as usize].position;
+        let at = self.touchable.point(point).position;
         self.placement.to_world(at + self.moved(point))
     }
 
@@ -155,18 +164,19 @@ impl Member {
     /// Looks at the points that are wanted, and no others.
     pub(super) fn look_at_wanted(&mut self) {
         for slot in (0..self.slots().len()).rev() {
-            let point = self.slots()[slot].point;
+            let point = self.point_of(&self.slots()[slot]);
             if !self.wants(point) {
                 self.between.leave(slot, self.slots().len() - 1);
                 self.patch.leave(slot);
                 self.slot_of[point as usize] = NONE;
-                if let Some(moved) = self.patch.slots().get(slot) {
-                    self.slot_of[moved.point as usize] = slot as u32;
+                if let Some(moved) = self.slots().get(slot) {
+                    let moved = self.point_of(moved);
+                    self.slot_of[moved as usize] = slot as u32;
                 }
             }
         }
         let ground = Ground {
-            body: &Arc::clone(self.surface.body()),
+            body: &Arc::clone(self.touchable.own().body()),
             number: 0,
             young_modulus: self.young_modulus,
             creep: Step::default(),
@@ -176,8 +186,14 @@ impl Member {
         for &point in &self.wanted {
             if self.slot_of[point as usize] == NONE {
                 let new = self.patch.slots().len();
+                let is_of_hands = self.touchable.is_of_hands(point);
+                let (surface, first) = self.touchable.of(is_of_hands);
+                let pair = if is_of_hands { OF_HANDS } else { OWN };
+                // Of two sets of points each knows the near field between its own alone.
+                let mut kin = [false; MOST_TOOLS];
+                kin[usize::from(pair[0])] = true;
                 self.patch
-                    .enter(&ground, &self.surface, ALL, point, &[true; MOST_TOOLS]);
+                    .enter(&ground, surface, pair, point - first, &kin);
                 self.slot_of[point as usize] = new as u32;
                 let patch = &self.patch;
                 self.between.enter(new, |slot| patch.compliance(slot, new));
@@ -221,7 +237,7 @@ impl Member {
     /// Forces on its contact points, N in its frame.
     pub fn loads(&self) -> impl Iterator<Item = (u32, DVec3)> {
         let slots = self.slots().iter();
-        slots.map(|slot| (slot.point, slot.force * self.young_modulus))
+        slots.map(|slot| (self.point_of(slot), slot.force * self.young_modulus))
     }
 
     /// Begins a tick of `dt` s.
@@ -235,8 +251,8 @@ impl Member {
         let Some(mobility) = &self.mobility else {
             return;
         };
-        let points = self.surface.points();
-        let loads = (self.loads()).map(|(point, force)| (points[point as usize].position, force));
+        let loads =
+            (self.loads()).map(|(point, force)| (self.touchable.point(point).position, force));
         self.motion = mobility.motion(loads);
         if self.motion.is_finite() {
             self.placement = self.placement.moved(&self.motion);

@@ -15,6 +15,8 @@ pub struct Rigid<'a> {
     pub friction: Friction,
     /// From 0 to 1 after it was lifted by a fault: how much it presses.
     pub presence: f64,
+    /// Whether it is led by a hand, for which there may be closer points.
+    pub is_hand: bool,
 }
 
 /// All that is rigid in a tick.
@@ -70,16 +72,19 @@ pub struct Obstacle {
     pub goal: Pose,
     /// Coulomb's coefficient.
     pub friction: f64,
+    /// Whether it presses, and does not bear.
+    pub is_hand: bool,
 }
 
 impl Obstacle {
     /// One that stays where it is.
-    pub fn new(tool: Tool, pose: Pose, friction: f64) -> Self {
+    pub fn new(tool: Tool, pose: Pose, friction: f64, is_hand: bool) -> Self {
         Self {
             tool,
             pose,
             goal: pose,
             friction,
+            is_hand,
         }
     }
 
@@ -90,6 +95,7 @@ impl Obstacle {
             pose: self.pose,
             friction: Friction::of(self.friction),
             presence: 1.0,
+            is_hand: self.is_hand,
         }
     }
 

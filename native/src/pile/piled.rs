@@ -135,7 +135,8 @@ impl Pile {
 
     /// The least distance between contact points, m.
     pub(super) fn spacing(&self) -> f64 {
-        let spacings = self.members.iter().map(|member| member.surface.spacing());
+        let members = self.members.iter();
+        let spacings = members.map(|member| member.touchable.own().spacing());
         spacings.fold(f64::INFINITY, f64::min)
     }
 

@@ -57,7 +57,6 @@ impl Settles for Pile {
         let mut most = 0.0_f64;
         for (body, member) in self.members.iter().enumerate() {
             let Some(free) = member.free else { continue };
-            let points = member.surface.points();
             let (mut force, mut torque) = (
                 member.placement.direction_to_body(self.gravity) * free.mass,
                 DVec3::ZERO,
@@ -67,7 +66,7 @@ impl Settles for Pile {
             for contact in self.contacts().iter().filter(presses) {
                 let own = turn * contact.force() * contact.sign_on(body);
                 for &(point, share) in contact.shares_on(body) {
-                    let at = points[point as usize].position;
+                    let at = member.touchable.point(point).position;
                     force += own * share;
                     torque += (at - free.centre).cross(own * share);
                 }

@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::contact::cones::MAX_FINGERS;
-use crate::contact::ground::MOST_SUPPORTS;
+use crate::contact::ground::{MOST_BODIES, MOST_SUPPORTS};
 use crate::control::safety::LIMITERS;
 use crate::control::state::State;
 use crate::device::Fault;
@@ -56,6 +56,7 @@ fn palpate_servo(module: &Bound<'_, PyModule>) -> PyResult<()> {
         .call_method1("register", (&stop_all,))?;
     module.add_function(stop_all)?;
     module.add("MAX_FINGERS", MAX_FINGERS)?;
+    module.add("MOST_BODIES", MOST_BODIES)?;
     module.add("MOST_SUPPORTS", MOST_SUPPORTS)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("STATES", PyTuple::new(py, State::ALL.map(State::name))?)?;

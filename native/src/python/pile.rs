@@ -23,18 +23,20 @@ use crate::python::vectors::{
 use crate::rest::free_body::FreeBody;
 use crate::rest::settling::{Settling, settle};
 use crate::tool::coefficients::Friction;
+use crate::tool::points::touchable::Touchable;
 
-/// A body: its contact points, Young's modulus, mass, centre, moments of inertia and drag time, if it is
-/// free, and where its frame is.
+/// A body: its contact points, those of hands if they are others, Young's modulus, mass, centre, moments
+/// of inertia and drag time, if it is free, and where its frame is.
 type Laid<'py> = (
     PyRef<'py, ToolSurface>,
+    Option<PyRef<'py, ToolSurface>>,
     f64,
     Option<(f64, Triple, Rows, f64)>,
     Triple,
     Rows,
 );
-/// A rigid tool, where it is, and the coefficient of friction.
-type Rigid<'py> = (PyRef<'py, Tool>, Triple, Rows, f64);
+/// A rigid tool, where it is, the coefficient of friction, and whether a hand leads it.
+type Rigid<'py> = (PyRef<'py, Tool>, Triple, Rows, f64, bool);
 
 #[pyclass(module = "palpate_servo")]
 pub struct Pile {
@@ -203,7 +205,7 @@ impl Pile {
     }
 }
 
-fn member((surface, modulus, free, position, rotation): Laid<'_>) -> PyResult<Member> {
+fn member((surface, closer, modulus, free, position, rotation): Laid<'_>) -> PyResult<Member> {
     let free = free
         .map(|(mass, centre, inertia, drag_time)| {
             let free = FreeBody {
@@ -223,19 +225,23 @@ fn member((surface, modulus, free, position, rotation): Laid<'_>) -> PyResult<Me
         .transpose()?;
     let placement = placed(&pose(position, rotation)?);
     Ok(Member::new(
-        surface.inner.clone(),
+        Touchable::new(
+            surface.inner.clone(),
+            closer.map(|closer| closer.inner.clone()),
+        ),
         positive("young_modulus", modulus)?,
         free,
         placement,
     ))
 }
 
-fn obstacle((tool, position, rotation, friction): Rigid<'_>) -> PyResult<Obstacle> {
+fn obstacle((tool, position, rotation, friction, is_hand): Rigid<'_>) -> PyResult<Obstacle> {
     let pose = pose(position, rotation)?;
     Ok(Obstacle::new(
         tool.inner.clone(),
         pose,
         coefficient(friction)?,
+        is_hand,
     ))
 }
 

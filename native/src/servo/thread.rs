@@ -188,9 +188,10 @@ impl Running {
         locked(&self.remembered).read().nodes().to_vec()
     }
 
-    /// What bears a body that nobody holds; see [`Borne::nodes`].
-    pub fn borne(&self) -> Vec<(u32, DVec3)> {
-        locked(&self.borne).read().nodes().to_vec()
+    /// What bears a body that nobody holds, and so many others that it presses; see
+    /// [`Borne::nodes`].
+    pub fn borne(&self, others: usize) -> Vec<Vec<(u32, DVec3)>> {
+        locked(&self.borne).read().of_bodies(1 + others)
     }
 
     /// The newest tick with the patches of its tools, as far as these are of the same tick.

@@ -2,6 +2,7 @@
 //!
 //! Readable reference: `core/contact/near_field/contact_points.py`.
 
+pub mod touchable;
 pub(crate) mod tree;
 
 use std::hash::{DefaultHasher, Hasher};

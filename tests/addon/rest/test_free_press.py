@@ -5,33 +5,21 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import begin, empty, layer_names, lying_state, part, seen_places, wait
+from soft_scene import (
+    at_rest,
+    begin,
+    empty,
+    layer_names,
+    lead,
+    lying_state,
+    part,
+    seen_places,
+    wait,
+)
 
 RADIUS = 0.012
 # Outside, over the top and beside the cube of 50 mm that stands around the origin.
 OVER, BESIDE = (0.004, 0.002, 0.0385), (0.0385, 0.0, 0.0)
-
-
-def lead(session, states, start, by):
-    """Set the finger down and lead it by a way, and wait until all is at rest."""
-    session.post(states.SetDown(start, 0))
-    session.tick()
-    end = tuple(np.add(start, by))
-    session.post(states.Move(end, 0))
-    at_rest(session, end)
-
-
-def at_rest(session, end):
-    before = []
-
-    def is_quiet():
-        place, _ = session.loop.servo.snapshot().placement
-        finger = session.loop.servo.snapshot().fingers[0]
-        before.append(np.concatenate([place, finger.contact_force]))
-        arrived = np.allclose(finger.probe, end, atol=1e-6)
-        return arrived and len(before) > 20 and np.ptp(before[-20:], axis=0).max() < 1e-5
-
-    wait(session, is_quiet)
 
 
 def lowest(thing):

@@ -10,6 +10,7 @@ from palpate.core.contact.tool.tools import sphere
 from palpate.core.errors import PalpateError
 from palpate.core.pile.pile import Pile
 from palpate.core.pile.pile_settings import PileSettings
+from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 from palpate.core.servo.session import displacements_of, native_tool
 from palpate.core.servo.settings import Settings
@@ -32,6 +33,7 @@ def stacked(cube, friction=0.0, tools=()):
         [(cube, place) for place in places],
         [Floor(friction=friction)],
         tools,
+        fingertips=[TIP],
         settings=PileSettings(friction=friction, spacing=0.013),
     )
 
@@ -90,12 +92,54 @@ def test_it_looks_as_it_does_in_the_pile(cube):
     pile.tick()
     for place in path:
         pile.lead([Pose.at(place)])
-        upper, _ = pile.step()
+        upper, lower = pile.step()
     servo = in_servo(come_down(stacked(cube)), path[0])
     servo.follow(path[:, None])
-    moved = displacements_of(cube, servo.snapshot(), cube.young_modulus)
-    assert np.abs(upper.displacements()).max() > 1e-4
-    np.testing.assert_allclose(moved, upper.displacements(), atol=1e-8)
+    shot = servo.snapshot()
+    moved = displacements_of(cube, shot, cube.young_modulus)
+    np.testing.assert_allclose(moved, upper.displacements(), atol=1e-7)
+    assert np.abs(upper.displacements()).max() > 5e-4
+    ((nodes, forces),) = shot.seen_from_body().other_loads
+    moved = cube.deform(cube.mesh.surface_nodes[nodes], forces)
+    np.testing.assert_allclose(moved, lower.displacements(), atol=1e-7)
+    assert np.abs(lower.displacements()).max() > 1e-4
+
+
+SMALL = sphere(0.0043)
+
+
+@pytest.mark.parametrize("beside", [(0.0, 0.0), (0.002, -0.002), (-0.0025, 0.0035)])
+def test_a_tip_smaller_than_points_of_bodies_are_apart_has_closer_ones(cube, beside):
+    """The cubes' own are 8.7 mm apart."""
+    places = [Pose.at([0.0, 0.0, EDGE + 1e-5]), Pose.at([0.0, 0.0, 0.0])]
+    laid = [(cube, place) for place in places]
+
+    def over(rest):
+        """From a little above its top to 2 mm into it."""
+        first = np.array([0.025 + beside[0], 0.025 + beside[1], 0.0])
+        first[2] = rest.surface()[:, 2].max() + 0.0045
+        return first - np.linspace(0.0, 0.0022, 100)[:, None] * [0.0, 0.0, 1.0]
+
+    path = over(Resting(cube, [Floor()]).settle())
+    alone = Resting(cube, [Floor()], [(SMALL, Pose.at(path[0]))])
+    alone.settle()
+    alone.lead([Pose.at(path[-1])])
+    expected = alone.settle().tools[0].force[2]
+    pile = Pile(laid, [Floor()], fingertips=[SMALL])
+    path = over(pile.settle()[0])
+    fingers = SteppedFingers(
+        pile.native_body, path[:1], Settings(cube.young_modulus), prop=pile.laid()
+    )
+    fingers.set_tool(native_tool(cube, pile.native_body, SMALL), np.eye(3))
+    forces, _ = fingers.follow(np.concatenate([path, np.repeat(path[-1:], 400, 0)])[:, None])
+    pressed = Pile(laid, [Floor()], [(SMALL, Pose.at(path[0]))])
+    pressed.settle()
+    pressed.lead([Pose.at(path[-1])])
+    (touch,) = pressed.settle()[0].tools
+    # The cube beneath is squeezed by 0.16 mm of the 2, of which force is the power of 3/2.
+    assert touch.force[2] == pytest.approx(expected * (1.0 - 0.08) ** 1.5, rel=0.03)
+    assert len(touch.pushes) > 3
+    assert forces[-1, 0, 2] == pytest.approx(touch.force[2], rel=0.03)
 
 
 def test_a_point_waits_for_a_tool(cube):

@@ -131,7 +131,6 @@ impl System {
     fn find_sides(&mut self, contacts: &[Contact], chosen: &[usize], body: usize, member: &Member) {
         self.sides.clear();
         self.shares.clear();
-        let points = member.surface.points();
         let turn = DMat3::from_quat(member.placement.rotation.inverse());
         for (contact, &number) in chosen.iter().enumerate() {
             let sign = contacts[number].sign_on(body);
@@ -140,7 +139,7 @@ impl System {
             }
             let (first, mut place, mut last) = (self.shares.len(), DVec3::ZERO, 0);
             for &(point, share) in contacts[number].shares_on(body) {
-                place += points[point as usize].position * share;
+                place += member.touchable.point(point).position * share;
                 self.shares.push((member.slot(point), share));
                 last = last.max(member.slot(point));
             }

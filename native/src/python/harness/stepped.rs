@@ -15,7 +15,8 @@ use crate::python::device::haply::haply_setup;
 use crate::python::harness::stepping::Stepping;
 use crate::python::servo::counters::{fault_counters, link_counters};
 use crate::python::servo::settings::{Chosen, Given, options};
-use crate::python::servo::snapshot::{Loads, Snapshot};
+use crate::python::servo::snapshot::Snapshot;
+use crate::python::servo::told::Loads;
 use crate::servo::paced::locked;
 use crate::servo::settings::Settings;
 

@@ -15,7 +15,8 @@ use crate::python::body::surface::Body;
 use crate::python::harness::stepping::Stepping;
 use crate::python::pile::Lain;
 use crate::python::servo::settings::{Chosen, Given, firmness};
-use crate::python::servo::snapshot::{Loads, Snapshot};
+use crate::python::servo::snapshot::Snapshot;
+use crate::python::servo::told::Loads;
 use crate::python::tool::made::{GivenTool, made, tip};
 use crate::python::vectors::{Rows, Triple, Vector, finite, rotation as turn, vectors};
 use crate::servo::paced::locked;
@@ -262,11 +263,12 @@ impl SteppedFingers {
         // No tick goes on meanwhile: all of the same one.
         let patches = ends.patches.iter_mut();
         let patches: Vec<PressedPatch> = patches.map(|patch| patch.read().clone()).collect();
+        let published = ends.snapshots.read();
         let loads = Loads {
             remembered: ends.remembered.read().nodes().to_vec(),
-            borne: ends.borne.read().nodes().to_vec(),
+            borne: ends.borne.read().of_bodies(1 + published.other_count),
         };
-        Snapshot::of(py, ends.snapshots.read(), &patches, loads)
+        Snapshot::of(py, published, &patches, loads)
     }
 }
 

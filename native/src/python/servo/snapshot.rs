@@ -1,11 +1,11 @@
 //! `Snapshot` and `FingerSnapshot`: one tick, whole, of all fingers or one.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::device::Fault;
-use crate::python::servo::told::{Posed, numbers, posed};
+use crate::python::servo::told::{Load, Loads, Posed, forces, numbers, posed};
 use crate::python::vectors::{Matrix, Vector, array, rows, square, table};
 use crate::rest::placement::Placement;
 use crate::servo::pressed_patch::{PressedPatch, PressedPoint};
@@ -169,15 +169,6 @@ impl FingerSnapshot {
     }
 }
 
-/// Forces on nodes of the surface besides those of fingers, N.
-#[derive(Clone, Default)]
-pub struct Loads {
-    /// Under which the body would look as past forces have left it.
-    pub remembered: Vec<(u32, DVec3)>,
-    /// By what bears it.
-    pub borne: Vec<(u32, DVec3)>,
-}
-
 /// All fingers of a tick; itself that of finger 0.
 #[pyclass(frozen, extends = FingerSnapshot, module = "palpate_servo")]
 pub struct Snapshot {
@@ -255,12 +246,19 @@ impl Snapshot {
         self.others.iter().map(|other| posed(py, other)).collect()
     }
     #[getter]
+    fn other_loads<'py>(&self, py: Python<'py>) -> PyResult<Vec<Load<'py>>> {
+        let others = self.loads.borne.iter().skip(1);
+        others
+            .map(|load| Ok((numbers(py, load), forces(py, load)?)))
+            .collect()
+    }
+    #[getter]
     fn remembered_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         numbers(py, &self.loads.remembered)
     }
     #[getter]
     fn remembered_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        table(py, self.loads.remembered.iter().map(|&(_, force)| force))
+        forces(py, &self.loads.remembered)
     }
     fn seen_from_body(&self, py: Python<'_>) -> PyResult<Py<Self>> {
         let seen = self.fingers.iter();
@@ -278,11 +276,11 @@ impl Snapshot {
     }
     #[getter]
     fn borne_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        numbers(py, &self.loads.borne)
+        numbers(py, self.loads.own())
     }
     #[getter]
     fn borne_forces<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        table(py, self.loads.borne.iter().map(|&(_, force)| force))
+        forces(py, self.loads.own())
     }
     #[getter]
     fn fingers(&self) -> Vec<FingerSnapshot> {

@@ -20,8 +20,9 @@ use crate::python::servo::counters::{finger_counters, stage_counters, timing_cou
 use crate::python::servo::refusals::{NOT_WHOLE, check_kept};
 use crate::python::servo::samples::{structured, structured_pieces};
 use crate::python::servo::settings::{Chosen, Given, options};
-use crate::python::servo::snapshot::{Loads, Snapshot};
+use crate::python::servo::snapshot::Snapshot;
 use crate::python::servo::standing::Standing;
+use crate::python::servo::told::Loads;
 use crate::python::tool::made::{GivenTool, MadeTool};
 use crate::python::vectors::{Triple, check_seconds, finite, positive};
 use crate::servo::paced::locked;
@@ -184,15 +185,11 @@ impl Servo {
             return Snapshot::of(py, &Published::before_the_start(1), &[], Loads::default());
         };
         let (published, patches) = running.published_with_patches();
-        Snapshot::of(
-            py,
-            &published,
-            &patches,
-            Loads {
-                remembered: running.remembered(),
-                borne: running.borne(),
-            },
-        )
+        let loads = Loads {
+            remembered: running.remembered(),
+            borne: running.borne(published.other_count),
+        };
+        Snapshot::of(py, &published, &patches, loads)
     }
 
     fn samples<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -14,21 +14,23 @@ impl Servo {
         self.remembers_nothing = memory.is_empty();
     }
 
-    /// Publishes what bears the body, where that is or was anything.
+    /// Publishes what bears the body and those that it presses, where that is or was anything.
     pub(in crate::servo) fn show_borne(&mut self, tick: u64, is_held: bool, young_modulus: f64) {
         let lying = self.prop.held.as_deref().filter(|_| !is_held);
         if lying.is_some() || !self.nothing_bears {
             let borne = self.borne.input_buffer_mut();
+            borne.clear(tick);
             match lying {
                 Some(Lying::Alone(prop)) => {
                     let forces = prop.borne();
-                    borne.show(
-                        tick,
-                        forces.map(|(node, force)| (node, force * young_modulus)),
-                    );
+                    borne.show(0, forces.map(|(node, force)| (node, force * young_modulus)));
                 }
-                Some(Lying::Among(among)) => borne.show(tick, among.borne()),
-                None => borne.show(tick, std::iter::empty()),
+                Some(Lying::Among(among)) => {
+                    for body in 0..among.count() {
+                        borne.show(body, among.borne(body));
+                    }
+                }
+                None => {}
             }
             self.borne.publish();
         }

@@ -12,6 +12,7 @@ use palpate_servo::pile::obstacle::Obstacle;
 use palpate_servo::pile::piled::Pile;
 use palpate_servo::rest::placement::Placement;
 use palpate_servo::servo::snapshot::State;
+use palpate_servo::tool::points::touchable::Touchable;
 use palpate_servo::tool::shape::{Pose, Tool};
 
 const HIGH: f64 = 0.05;
@@ -28,13 +29,18 @@ fn stacked(fingers: usize) -> Table {
             position: DVec3::Z * height,
             rotation: DQuat::IDENTITY,
         };
-        Member::new(surface.clone(), 1e4, Some(free()), placement)
+        Member::new(
+            Touchable::new(surface.clone(), None),
+            1e4,
+            Some(free()),
+            placement,
+        )
     });
     let floor = Pose {
         position: DVec3::ZERO,
         rotation: DMat3::IDENTITY,
     };
-    let floor = Obstacle::new(Tool::endless(1e-3).expect("sound"), floor, 0.5);
+    let floor = Obstacle::new(Tool::endless(1e-3).expect("sound"), floor, 0.5, false);
     let pile = Pile::new(members.into(), vec![floor], DVec3::NEG_Z * GRAVITY, 0.5);
     let lying = Box::new(Lying::Among(Among::new(pile)));
     // A copy has the same memory, as when Python lays it.

@@ -1,0 +1,103 @@
+"""A soft object beside one that is pressed: it moves and gives way with that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.body.soft_body import SoftBody
+from ....core.contact.tool.pose import Pose
+from ...object.drawn_body import DrawnBody
+from ...scene.object_handle import ObjectHandle
+from .. import rest_layer
+from ..before import Before
+from ..free_body import Lying, above
+from ..laid import move
+from ..placement import frame_at
+
+Load = tuple[NDArray[np.int64], NDArray[np.float64]]
+
+# It is drawn anew when it has moved or given way by more than this share of its size.
+SEEN = 1e-5
+
+
+@dataclass(eq=False)
+class Neighbour:
+    """A soft object that a pressed one rests on.
+
+    Attributes
+    ----------
+    handle : of the object.
+    drawn : its body, and the object as it was.
+    body : the same at the object's density and Young's modulus.
+    before : how the object lay.
+    rested : where it came to rest before the press.
+    floor : height of what all rest on, metres; None without one.
+    """
+
+    handle: ObjectHandle
+    drawn: DrawnBody
+    body: SoftBody
+    before: Before
+    rested: Lying
+    floor: float | None
+    _shown: tuple[Pose, NDArray[np.float64]] | None = None
+
+    def follow(self, placement: Pose, load: Load) -> None:
+        """Show the object where its body is, under a load on nodes (k,) of its surface, (k, 3) N in
+        its own axes.
+        """
+        thing = self.handle.find()
+        if thing is None:
+            return
+        nodes, forces = load
+        displacements = self.body.deform(self.body.mesh.surface_nodes[nodes], forces)
+        if self._is_shown(placement, displacements):
+            return
+        self._shown = placement, displacements
+        frame = self.drawn.frame
+        if self.body.is_free:
+            frame = frame_at(frame, placement)
+            move(thing, frame)
+        moved = self.drawn.drawn_displacement(displacements)
+        rest_layer.show(thing, above(self.drawn, frame, moved, self.floor))
+
+    def give_back(self) -> None:
+        """Have the object as it was before."""
+        thing, self._shown = self.handle.find(), None
+        if thing is not None:
+            self.before.give_back(thing)
+
+    @property
+    def has_moved(self) -> bool:
+        """Whether it is elsewhere, or another shape, than it came to rest before."""
+        if self._shown is None:
+            return False
+        placement, displacements = self._shown
+        rested = self.rested.rest.placement, self.rested.displacements
+        return self._apart(rested, (placement, displacements)) > 1e-3
+
+    def _is_shown(self, placement: Pose, displacements: NDArray[np.float64]) -> bool:
+        shown = self._shown
+        return shown is not None and self._apart(shown, (placement, displacements)) < SEEN
+
+    def _apart(
+        self,
+        one: tuple[Pose, NDArray[np.float64]],
+        other: tuple[Pose, NDArray[np.float64]],
+    ) -> float:
+        """How far two states are apart, as a share of its size."""
+        (first, bent), (second, otherwise) = one, other
+        turned = np.abs(first.rotation - second.rotation).max()
+        gone = np.abs(first.position - second.position).max()
+        return float(max(turned, max(gone, np.abs(bent - otherwise).max()) / self.drawn.size))
+
+
+def neighbour(
+    thing: bpy.types.Object, drawn: DrawnBody, body: SoftBody, rested: Lying, floor: float | None
+) -> Neighbour:
+    """An object as a neighbour of one that will be pressed."""
+    return Neighbour(ObjectHandle.of(thing), drawn, body, Before.of(thing), rested, floor)
