@@ -6,8 +6,8 @@ Cubes of 50 mm with about 1,700 nodes stand on each other, with friction and wit
 between boards, 16 colliders with the floor; times are the processor's, of the tick alone. Two cubes
 are then pressed by a fingertip of 8 mm, by the pile's own ticks, which take as long as they need,
 and by the servo's whole ones, which are bounded. The exit status tells whether 8 bodies take less
-than a frame of 16 ms, and the press in the servo 0.3 ms at the median and 0.7 at the worst, as a
-loop of 1 kHz wants it. ``--picture`` draws how the cost grows with bodies and contacts.
+than 16 ms, between boards a frame of Blender's 24 a second, and the press in the servo 0.3 ms at
+the median and 0.7 at the worst, as a loop of 1 kHz wants it. ``--picture`` draws how the cost grows with bodies and contacts.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ TIP = sphere(0.008)
 SQUEEZED = 1e-4
 # Colliders of a scene besides the floor.
 BOARDS = 15
-FRAME, FRAMED = 16.0, 8
+# Of so many bodies a tick takes so many ms at most: alone, and among the boards, in a frame.
+FRAMED, ALONE, FRAME = 8, 16.0, 1000.0 / 24.0
 # Of a press in the servo, ms: the median and the worst.
 MEDIAN, WORST = 0.3, 0.7
 FRICTIONS = (0.0, 0.5)
@@ -145,7 +146,7 @@ def main() -> int:
             costs(pile, [], LANDING)
             took, touches = costs(pile, [], options.ticks)
             median = float(np.median(took))
-            failed = failed or (count <= FRAMED and median > FRAME)
+            failed = failed or (count <= FRAMED and median > (FRAME if boards else ALONE))
             if not boards:
                 rows.append((count, friction, touches, median))
             figures = f"{touches:9}{median:8.2f}{took.max():8.2f}"
