@@ -12,6 +12,7 @@ from bl_ext.user_default.palpate.operators.session import press_session
 from bl_ext.user_default.palpate.operators.session.press_state import Phase
 
 PINCH, FINGERTIP = "sample_scenes/pinch.blend", "sample_scenes/fingertip.blend"
+STACKED, JELLY = "sample_scenes/stacked.blend", ("Lime", "Cherry", "Lemon")
 # A place on the mouse's back that the view shows from above, world coordinates.
 BACK = (-0.018, -0.014, 0.057)
 
@@ -106,6 +107,32 @@ def two_empties_press_as_the_animation_leads_them(stage: Stage) -> Wait:
     yield from type_key(stage, "RET")
     yield from stage.until(lambda: press_session.current() is None, "the kept shape")
     assert "Press 1" in bpy.data.objects["Nodes"].modifiers
+
+
+def a_press_on_a_stack_moves_what_is_beneath_and_escape_gives_all_back(stage: Stage) -> Wait:
+    yield from _open(stage, STACKED, "Lemon")
+    before = [_lies(name) for name in JELLY]
+    yield from _press(stage)
+    # The front of the uppermost, from which a push presses it into the one beneath, too.
+    x, y = stage.pixel(tuple(_lies("Lemon").mean(axis=0)))
+    yield from stage.drag([(x, y), (x + 4, y - 40)], steps=4, release=False)
+    yield from stage.until(lambda: _figures()[0].force > 0.002, "the force")
+    yield from stage.picture("stack-pressed")
+    moved = [np.abs(_lies(name) - lay).max() for name, lay in zip(JELLY, before, strict=True)]
+    assert min(moved) > 1e-5, moved
+    yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
+    yield from end_press(stage)
+    for name, lay in zip(JELLY, before, strict=True):
+        np.testing.assert_allclose(_lies(name), lay, rtol=0, atol=1e-6)
+
+
+def _lies(name: str) -> np.ndarray:
+    """Vertices (p, 3) as they are seen, in the world."""
+    seen = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
+    flat = np.empty(3 * len(seen.data.vertices), dtype=np.float32)
+    seen.data.vertices.foreach_get("co", flat)
+    matrix = np.array(seen.matrix_world)
+    return flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def _open(stage: Stage, file: str, name: str) -> Wait:
