@@ -196,3 +196,10 @@ def test_a_com_port_is_checked_by_opening_it_once(monkeypatch, number, reason):
     with pytest.raises(PortError, match=f"COM12: .*{reason}"):
         check_port("COM12")
     assert asked == [r"\\.\COM12"]
+
+
+@pytest.mark.skipif(sys.platform != "win32", reason="about what Windows itself says of a port")
+@pytest.mark.parametrize("asked", [check_port, say_hello])
+def test_a_com_port_that_is_not_there_is_told_as_such(asked):
+    with pytest.raises(PortError, match=r"COM199: .*no such port"):
+        asked("COM199")
