@@ -59,6 +59,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
     cube = open_scene("cube", folder)
     bpy.context.scene.palpate.tip = "POINT"
     figures = baking.rebuild_body(cube)
+    press_once = palpate("operators.press.press_once").press_once
     pictures = [photograph(folder / "cube-before.png", 75)]
     presses = []
     for name, at, by in (
@@ -66,7 +67,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
         ("side", (0.0, -0.025, 0.025), (0.0, 0.005, 0.0)),
     ):
         say(f"cube: pressing the {name}")
-        bpy.ops.palpate.press("EXEC_DEFAULT", at=at, by=by)
+        pressed = press_once(cube, bpy.context.scene, at, by)
         pictures.append(photograph(folder / f"cube-{name}.png", 75))
         layers, kept = palpate("operators.layer.layers"), cube.modifiers.active
         moved = layers.displacement(cube, kept)
@@ -76,6 +77,7 @@ def demo_cube(folder: Path) -> dict[str, Any]:
                 "at": pixel(list(at)),
                 "tip": pixel([a + b for a, b in zip(at, by, strict=True)]),
                 "max_displacement_mm": 1e3 * float(np.linalg.norm(moved, axis=1).max()),
+                "force_n": list(pressed.force),
             }
         )
         layers.remove(cube, kept)

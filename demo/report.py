@@ -1,5 +1,6 @@
 """Measurements of the demo, as report.json and as readable lines."""
 
+import math
 from typing import Any
 
 SERVO = ("rate_hz", "ticks", "late_ticks", "realtime")
@@ -12,6 +13,7 @@ def report(raw: dict[str, Any], pictures: list[str]) -> dict[str, Any]:
     return {
         "blender": raw["blender"],
         "cube": raw["cube"],
+        "cube_presses": {one["name"]: one["force_n"] for one in raw["cube_presses"]},
         "mouse": raw["mouse"],
         "servo": {
             **{name: servo[name] for name in SERVO},
@@ -28,6 +30,7 @@ def summary(made: dict[str, Any]) -> str:
     lines = {
         "Blender": made["blender"],
         "cube": _body(made["cube"]),
+        "forces": _forces(made["cube_presses"]),
         "mouse": _body(made["mouse"]),
         "servo": _servo(made["servo"]),
         "link": _link(made["servo"]["link"]),
@@ -36,6 +39,12 @@ def summary(made: dict[str, Any]) -> str:
     }
     told = [f"{name:8} {text}" for name, text in lines.items()]
     return "\n".join([*told, *(f"picture  {path}" for path in made["pictures"])])
+
+
+def _forces(presses: dict[str, list[float]]) -> str:
+    """To all digits: stored tetrahedra feel the same on every system."""
+    told = (f"{name} {math.hypot(*force):.12g} N" for name, force in presses.items())
+    return f"5 mm into the cube: {', '.join(told)}"
 
 
 def _servo(servo: dict[str, Any]) -> str:

@@ -27,6 +27,7 @@ def raw() -> dict[str, Any]:
         "blender": "5.0.1",
         "cube": BODY,
         "mouse": BODY,
+        "cube_presses": [{"name": "top", "at": (0.5, 0.5), "force_n": [0.3, 0.0, 0.4]}],
         "servo": {
             "rate_hz": 1000,
             "ticks": 8000,
@@ -56,7 +57,9 @@ def raw() -> dict[str, Any]:
 
 def test_the_report_has_exactly_the_promised_shape(raw: dict[str, Any]) -> None:
     made = report(raw, ["a.png"])
-    assert set(made) == {"blender", "cube", "mouse", "servo", "press", "pictures"}
+    assert set(made) == {
+        *("blender", "cube", "cube_presses", "mouse", "servo", "press", "pictures")
+    }
     assert set(made["servo"]) == {
         "rate_hz", "ticks", "late_ticks", "lateness_us", "realtime", "link",
     }  # fmt: skip
@@ -64,6 +67,7 @@ def test_the_report_has_exactly_the_promised_shape(raw: dict[str, Any]) -> None:
     assert set(made["servo"]["link"]) == {"states", "forces", "lost", "crc_errors"}
     assert made["press"] == raw["press"]
     assert made["cube"] == BODY
+    assert made["cube_presses"] == {"top": [0.3, 0.0, 0.4]}
     assert json.loads(json.dumps(made)) == made
 
 
@@ -72,6 +76,7 @@ def test_the_summary_says_what_was_measured(raw: dict[str, Any]) -> None:
     for part in (
         "125 nodes",
         "linear, L dense",
+        "top 0.5 N",
         "8000 ticks",
         "fifo 20",
         "8.0 mm",
