@@ -9,12 +9,12 @@ from typing import Any
 
 import bpy
 import numpy as np
+from frame_clock import frames
 from installed import palpate
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-FRAME_RATE = 60
 SECONDS = 8.0
 # Times and depths of the hand, as shares of the full depth; the last value is held until the end.
 PRESSES = [(0.6, -0.5), (1.0, 0.0), (2.2, 1.0), (2.6, 1.0), (3.6, -0.1), (4.4, 0.7), (5.2, 0.2),
@@ -76,8 +76,8 @@ def press_with_device(
         scene.palpate.source, scene.palpate.port = "SERIAL", device.port
         session = session_module.begin(thing, scene, state.Source.DEVICE)
         try:
-            frames, samples = _draw_frames(session)
-            figures = _figures(session, thing, frames)
+            drawn, samples = _draw_frames(session)
+            figures = _figures(session, thing, drawn)
             session.post(state.Keep())
         finally:
             session_module.give_way("")
@@ -86,23 +86,23 @@ def press_with_device(
 
 
 def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
-    """Tick the session FRAME_RATE times a second; times of frames that drew a dent, seconds."""
+    """Tick the session in every frame; times of frames that drew a dent, seconds."""
     seconds, samples = [], [session.loop.servo.samples()]
-    start = time.perf_counter()
-    due = start
-    while (begun := time.perf_counter()) - start < SECONDS:
+    for begun in frames(SECONDS, lambda: _is_pressed(session)):
         session.tick()
         if session.seen.displacements is not None:
             seconds.append(time.perf_counter() - begun)
         samples.append(session.loop.servo.samples())
-        due = max(due + 1.0 / FRAME_RATE, time.perf_counter())
-        time.sleep(max(due - time.perf_counter(), 0.0))
     return np.array(seconds), np.concatenate(samples)
 
 
-def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, Any]:
+def _is_pressed(session: Any) -> bool:
+    return session.seen.displacements is not None and bool(session.state.pressed)
+
+
+def _figures(session: Any, thing: bpy.types.Object, drawn: Array) -> dict[str, Any]:
     snapshot, moved = session.snapshot, session.seen.displacements
-    if moved is None or not session.state.pressed:
+    if not _is_pressed(session):
         reason = session.state.message or "nothing is touched"
         raise RuntimeError(f"the hand holds, but there is no press to keep: {reason}")
     frame = session.frames[0]
@@ -113,10 +113,10 @@ def _figures(session: Any, thing: bpy.types.Object, frames: Array) -> dict[str, 
             "depth_mm": 1e3 * float(np.linalg.norm(snapshot.probe - snapshot.proxy)),
             "force_n": float(np.linalg.norm(snapshot.output_force)),
             "max_displacement_mm": 1e3 * float(np.linalg.norm(moved, axis=1).max()),
-            "frames": len(frames),
+            "frames": len(drawn),
             "frame_ms": {
-                "p50": 1e3 * float(np.percentile(frames, 50)),
-                "p99": 1e3 * float(np.percentile(frames, 99)),
+                "p50": 1e3 * float(np.percentile(drawn, 50)),
+                "p99": 1e3 * float(np.percentile(drawn, 99)),
             },
         },
         "contact": {
