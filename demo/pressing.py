@@ -88,7 +88,7 @@ def press_with_device(
 def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
     """Tick the session in every frame; times of frames that drew a dent, seconds."""
     seconds, samples = [], [session.loop.servo.samples()]
-    for begun in frames(SECONDS, lambda: _is_pressed(session)):
+    for begun in frames(SECONDS, lambda: _is_pressed(session) and _is_felt(session)):
         session.tick()
         if session.seen.displacements is not None:
             seconds.append(time.perf_counter() - begun)
@@ -98,6 +98,13 @@ def _draw_frames(session: Any) -> tuple[Array, NDArray[np.void]]:
 
 def _is_pressed(session: Any) -> bool:
     return session.seen.displacements is not None and bool(session.state.pressed)
+
+
+def _is_felt(session: Any) -> bool:
+    """Whether the force has come back after the device was let go."""
+    snapshot = session.snapshot
+    wanted, output = snapshot.contact_force, snapshot.output_force
+    return bool(np.linalg.norm(output) > 0.9 * np.linalg.norm(wanted))
 
 
 def _figures(session: Any, thing: bpy.types.Object, drawn: Array) -> dict[str, Any]:
