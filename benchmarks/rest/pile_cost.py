@@ -7,7 +7,8 @@ between boards, 16 colliders with the floor; times are the processor's, of the t
 are then pressed by a fingertip of 8 mm, by the pile's own ticks, which take as long as they need,
 and by the servo's whole ones, which are bounded. The exit status tells whether 8 bodies take less
 than 16 ms, between boards a frame of Blender's 24 a second, and the press in the servo 0.3 ms at
-the median and 0.7 at the worst, as a loop of 1 kHz wants it. ``--picture`` draws how the cost grows with bodies and contacts.
+the median and 0.7 at the worst, as a loop of 1 kHz wants it. ``--picture`` draws how the cost grows
+with bodies and contacts.
 """
 
 from __future__ import annotations
