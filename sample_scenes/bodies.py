@@ -34,7 +34,7 @@ def cube_tets() -> Tets:
 
 
 def set_up(
-    thing: bpy.types.Object, pinned: str, *, material: str, formulation: str = "AUTO"
+    thing: bpy.types.Object, pinned: str, *, material: str, formulation: str = "SMOOTHED"
 ) -> None:
     """Fill in the panel: material by its preset, formulation and pin group."""
     settings = thing.palpate

@@ -28,7 +28,7 @@ def material_scene() -> list[bpy.types.Object]:
     for number, (name, material, colour) in enumerate(CUBES):
         cube = scenes.paper_cube(scene, name)
         cube.location.x = (number - 1) * APART
-        bodies.set_up(cube, scenes.PINNED, material=material, formulation="SMOOTHED")
+        bodies.set_up(cube, scenes.PINNED, material=material)
         darker = (0.5 * colour[0], 0.5 * colour[1], 0.5 * colour[2])
         cube.data.materials[0] = fabric.foam(colour, darker, scenes.CUBE_EDGE / 10.0)
         cubes.append(cube)

@@ -6,15 +6,11 @@ from ...operators.bake import bake_session
 from ...operators.layer import stack
 from ...operators.object import soft_object
 from ...operators.session import press_session
+from ..properties.soft_object import FORMULATION_ITEMS
 from . import cost, shape
 from .base import PalpatePanel, named_properties, while_idle
 from .sentence import say
 
-# Purpose of each formulation, in a line.
-FORMULATION_TEXTS = {
-    "linear": "Linear: as in the paper, right up to about 0.4",
-    "smoothed": "Smoothed: does not lock near 0.5",
-}
 MODE_TEXTS = {
     "CONSISTENT": "The touched point moves exactly as far as the finger",
     "PAPER": "As in the paper: inside triangles the surface stays a little short",
@@ -68,8 +64,9 @@ class PALPATE_PT_method(PalpatePanel, bpy.types.Panel):
         layout.enabled = bake_session.current() is None and press_session.current() is None
         thing = context.object
         settings = thing.palpate
-        layout.prop(settings, "formulation")
-        say(layout, context, FORMULATION_TEXTS[soft_object.formulation_now(thing)], "INFO")
+        choices = layout.row(heading="Formulation", align=True)
+        for item in FORMULATION_ITEMS:
+            choices.prop_enum(settings, "formulation", item[0])
         layout.prop(settings, "form")
         row = layout.row()
         row.active = settings.form != "DENSE"

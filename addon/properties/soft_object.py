@@ -23,15 +23,13 @@ PIN_ITEMS = [
     ),
     ("NONE", "None", "Nothing: the object rests on what is under it, slides, rolls and tips over"),
 ]
+# Files hold the numbers of these items: give no number twice.
 FORMULATION_ITEMS = [
-    (
-        "AUTO",
-        "Automatic",
-        "Smoothed where linear tetrahedra would be too stiff, linear elsewhere",
-    ),
-    ("LINEAR", "Linear", "The paper's. Too stiff as Poisson's ratio comes near 0.5"),
-    ("SMOOTHED", "Smoothed", "Right for rubber and silicone too. The bake takes longer"),
+    ("SMOOTHED", "Smoothed", "Right for every material", "", 2),
+    ("LINEAR", "Linear", "The paper's. Too stiff, most of all near a ratio of 0.5", "", 1),
 ]
+# Held by older files only, and as good as Smoothed; no panel offers it.
+FORMER_FORMULATION = ("AUTO", "Automatic", "Smoothed", "", 0)
 FORM_ITEMS = [
     ("AUTO", "Automatic", "Full while it is small, compressed where it would be large"),
     ("DENSE", "Full", "Every number is kept. Memory grows with the square of the surface"),
@@ -107,7 +105,10 @@ class PalpateObject(MaterialProperties, ShapeProperties, RestProperties, bpy.typ
         span(0.001, 100_000.0, soft_min=0.01, soft_max=10_000.0, precision=2, step=1000),
     )
     formulation: choice(
-        "Formulation", "How tetrahedra resist. Needs Rebuild Body", FORMULATION_ITEMS, "AUTO"
+        "Formulation",
+        "How tetrahedra resist. Needs Rebuild Body",
+        [*FORMULATION_ITEMS, FORMER_FORMULATION],
+        "SMOOTHED",
     )
     form: choice(
         "Compliance", "How the computed response is kept. Needs Rebuild Body", FORM_ITEMS, "AUTO"

@@ -16,7 +16,7 @@ from ...core.mesh.read_mesh import TetFile, read_surface, read_tets
 from ...core.mesh.surface import Surface
 from ...core.mesh.tet_mesh import TetMesh
 from ...core.softness.scales.shore import Shore, young_from_shore
-from ...core.stiffness.formulation import AUTOMATIC, FORMULATIONS
+from ...core.stiffness.formulation import FORMULATIONS
 from ...core.stiffness.pins import NoPins, PinBelow, PinNodes, Pins
 from ...core.stiffness.regions import TetScale
 from ..softness.materials import material_named
@@ -114,10 +114,10 @@ def add_bake_options(parser: argparse.ArgumentParser) -> None:
     )
     material.add_argument(
         "--formulation",
-        choices=(AUTOMATIC, *FORMULATIONS),
+        choices=FORMULATIONS,
         default=default.formulation,
-        help="of the tetrahedra: the paper's linear ones, or smoothed ones, which do not lock "
-        "where Poisson's ratio is near 0.5 (default: %(default)s, what suits the ratio)",
+        help="of the tetrahedra: smoothed, or the paper's linear ones, which are too stiff and "
+        "lock where Poisson's ratio is near 0.5 (default: %(default)s)",
     )
     compliance = parser.add_argument_group("compliance")
     compliance.add_argument(

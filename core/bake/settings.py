@@ -8,7 +8,7 @@ from ..compliance.free_body.density import density_checked
 from ..errors import PalpateError
 from ..law.of_material import RUBBER, law_checked
 from ..stiffness.assembly import lame_parameters
-from ..stiffness.formulation import AUTOMATIC, formulation_for
+from ..stiffness.formulation import SMOOTHED, formulation_checked
 from ..stiffness.pins import PinBelow, Pins, fraction_checked
 from ..stiffness.regions import StiffRegion, TetScale
 
@@ -28,7 +28,7 @@ class BakeSettings:
     epsilon : largest distance between the body's surface and the input's, as such a share.
     decimate_above : inputs of more triangles are decimated to this many.
     time_limit : seconds for tetrahedralization.
-    formulation : of the stiffness; ``auto`` chooses by Poisson's ratio.
+    formulation : of the stiffness, one of :data:`..stiffness.formulation.FORMULATIONS`.
     form : of the compliance, ``dense`` or ``compressed``; ``auto`` compresses large bodies.
     tolerance : largest relative column error from compression.
     stiffness : stiffer and softer regions; None for the same everywhere.
@@ -44,7 +44,7 @@ class BakeSettings:
     epsilon: float = 0.003
     decimate_above: int = 6000
     time_limit: float = 600.0
-    formulation: str = AUTOMATIC
+    formulation: str = SMOOTHED
     form: str = "auto"
     tolerance: float = 1e-3
     stiffness: StiffRegion | TetScale | None = None
@@ -82,7 +82,7 @@ class BakeSettings:
                 )
         if self.density is not None:
             density_checked(self.density)
-        formulation_for(self.formulation, self.poisson_ratio)
+        formulation_checked(self.formulation)
         law_checked(self.law)
         if isinstance(self.pins, PinBelow):
             fraction_checked(self.pins.fraction)

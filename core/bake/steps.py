@@ -29,7 +29,6 @@ from ..mesh.tetrahedralize import tetrahedralize
 from ..progress import unwatched
 from ..sentence import Sentence
 from ..stiffness.assembly import assemble
-from ..stiffness.formulation import formulation_for
 from ..stiffness.held_pins import free_or_pinned, pins_checked
 from ..stiffness.pins import NoPins, pinned_nodes
 from ..stiffness.regions import StiffRegion, TetScale, young_scale
@@ -128,12 +127,11 @@ def bake(
         is_free = isinstance(settings.pins, NoPins)
         held = free_or_pinned if is_free else pins_checked
         fixed = held(mesh, pinned_nodes(settings.pins, mesh, surface))
-    formulation = formulation_for(settings.formulation, settings.poisson_ratio)
     scale = _young_scale(settings.stiffness, mesh, surface)
     with _timed(report.seconds, "stiffness"):
         work.begin("stiffness")
         stiffness = assemble(
-            mesh, settings.poisson_ratio, formulation=formulation, young_scale=scale
+            mesh, settings.poisson_ratio, formulation=settings.formulation, young_scale=scale
         )
     with _timed(report.seconds, "plan"):
         plan = plan_surface_inverse(mesh, stiffness, fixed, progress=work.begin("plan"))
@@ -146,7 +144,7 @@ def bake(
         settings.poisson_ratio,
         compliance,
         settings.young_modulus,
-        formulation,
+        settings.formulation,
         scale,
         fit,
         density=settings.density or (DEFAULT_DENSITY if is_free else None),

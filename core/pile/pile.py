@@ -48,7 +48,7 @@ class Pile:
     >>> above = Pose.at([0.0, 0.0, 0.0505])
     >>> lower, upper = Pile([(cube, Pose.at([0.0, 0.0, 0.0])), (cube, above)], [Floor()]).settle()
     >>> round(float(upper.others[0].force[2]), 3), round(float(lower.supports[0].force[2]), 3)
-    (-1.226, -2.452)
+    (-1.226, -2.453)
 
     Parameters
     ----------

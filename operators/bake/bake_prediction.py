@@ -13,6 +13,7 @@ from ...core.bake.settings import BakeSettings
 from ...core.errors import PalpateError
 from ...core.machine.available_memory import available_memory
 from ...core.stiffness.pins import NoPins, PinBelow, PinCore, Pins
+from ..object import soft_object
 from ..object.baked_settings import law_of_object
 from ..pins import pin_group, stiff_region
 from ..scene.drawn_surface import DrawnSurface
@@ -66,7 +67,7 @@ def settings_of(thing: bpy.types.Object, pins: Pins) -> BakeSettings:
         edge_length=chosen.edge_length,
         epsilon=chosen.epsilon,
         decimate_above=chosen.decimate_above,
-        formulation=chosen.formulation.lower(),
+        formulation=soft_object.formulation_now(thing),
         form=chosen.form.lower(),
         tolerance=chosen.compression_tolerance / 100,
     )

@@ -11,7 +11,7 @@ import bpy
 
 from ...core.errors import PalpateError
 from ...core.sentence import Sentence
-from ...core.stiffness.formulation import formulation_for
+from ...core.stiffness.formulation import LINEAR, LOCKING_POISSON_RATIO, SMOOTHED
 from ..carrier import body_source, seen_mesh
 from ..pins import pin_group, stiff_region
 from ..scene import fingerprint
@@ -146,9 +146,8 @@ def refuse_changed(thing: bpy.types.Object, status: BodyStatus) -> None:
 
 
 def formulation_now(thing: bpy.types.Object) -> str:
-    """Formulation of a bake, with Automatic resolved."""
-    settings = thing.palpate
-    return formulation_for(settings.formulation.lower(), round(settings.poisson_ratio, 6))
+    """Formulation that the next bake takes."""
+    return LINEAR if thing.palpate.formulation == "LINEAR" else SMOOTHED
 
 
 def _unbaked_settings(
@@ -158,11 +157,20 @@ def _unbaked_settings(
     ratio = settings.poisson_ratio - settings.baked_poisson_ratio
     changes = (
         ("Poisson's Ratio", abs(ratio) > 1e-6),
-        ("Formulation", formulation_now(thing) != settings.baked_formulation),
+        ("Formulation", _other_formulation(thing)),
         ("Stiff Region", old.stiffness != new.stiffness),
         ("Compliance", _other_form(settings)),
     )
     return tuple(name for name, changed in changes if changed)
+
+
+def _other_formulation(thing: bpy.types.Object) -> bool:
+    """Whether the chosen formulation is not the body's. What was baked linear when that was the
+    default stays as it is.
+    """
+    baked, now = thing.palpate.baked_formulation, formulation_now(thing)
+    once_default = baked == LINEAR and thing.palpate.poisson_ratio < LOCKING_POISSON_RATIO
+    return now != baked and not (now == SMOOTHED and once_default)
 
 
 def _other_meshing(settings: bpy.types.PropertyGroup) -> tuple[str, ...]:

@@ -71,6 +71,8 @@ def soft_cube(edge: float = 0.05, pins: str = "BELOW") -> bpy.types.Object:
 
 def soften(thing: bpy.types.Object, edges: tuple[float, float, float], pins: str) -> None:
     """Give a box at the origin, ``edges`` long, the body of the stored cube stretched so."""
+    # As of objects from before smoothed elements were what Make Soft bakes.
+    thing.palpate.formulation = "LINEAR"
     drawn = part("operators.scene.drawn_surface").read(thing, bpy.context.scene)
     if (edges, pins) not in _bodies:
         settings = part("operators.bake.bake_prediction").all_settings_of(thing, drawn)

@@ -15,7 +15,7 @@ from ...compliance.dense import BYTES_PER_PAIR
 from ...machine.machine_speed import dgemm_rate
 from ...mesh.surface import Surface
 from ...mesh.tet_mesh import TetMesh
-from ...stiffness.formulation import LINEAR, formulation_for
+from ...stiffness.formulation import LINEAR, SMOOTHED
 from ...stiffness.pins import NoPins, PinBelow, PinCore, PinNodes, Pins, PinWeights
 from ..settings import BakeSettings
 from .bake_cost import COMPRESSING_SHARE, PROCESS_GROWTH, BakeCost, compressing_flops
@@ -52,14 +52,14 @@ TETRAHEDRALIZE_SPREAD = 2.0
 START_SECONDS = 0.7
 
 # Seconds for each tetrahedron to assemble, for each node to plan; by formulation.
-ASSEMBLY_SECONDS = {LINEAR: 2e-6, "smoothed": 15e-6}
-PLANNING_SECONDS = {LINEAR: 30e-6, "smoothed": 60e-6}
+ASSEMBLY_SECONDS = {LINEAR: 2e-6, SMOOTHED: 15e-6}
+PLANNING_SECONDS = {LINEAR: 30e-6, SMOOTHED: 60e-6}
 TETS_PER_NODE = 5.0
 # Comparing with the mesh: seconds for each of its triangles and each surface node.
 CHECK_SECONDS = 2.5e-5
 
 # Bytes of the stiffness for each node, besides the elimination's.
-STIFFNESS_BYTES = {LINEAR: 1_500, "smoothed": 7_000}
+STIFFNESS_BYTES = {LINEAR: 1_500, SMOOTHED: 7_000}
 
 # A compressed table has about 3.3 MB for 1,000 free surface nodes at a tolerance of 0.001.
 COMPRESSED_BYTES = 3.3e6
@@ -108,7 +108,7 @@ ELIMINATION = {
         PowerLaw(7010.0, 2.20, -0.58),
         PowerLaw(400.0, 1.14, 0.34),
     ),
-    "smoothed": EliminationLaws(
+    SMOOTHED: EliminationLaws(
         PowerLaw(676.0, 1.88, 0.35),
         PowerLaw(3650.0, 0.93, 0.45),
         PowerLaw(1210.0, 2.30, -0.30),
@@ -144,7 +144,7 @@ def rest_seconds(size: MeshSize, settings: BakeSettings) -> dict[str, float]:
     cost = _form_cost(size, settings, None)
     compressing = 0.0
     if cost.form == "compressed":
-        laws = _laws(settings)
+        laws = ELIMINATION[settings.formulation]
         factor = laws.factor_peak.at(size.nodes, cost.free_surface_nodes)
         compressing = compressing_flops(cost.free_surface_nodes, factor) / dgemm_rate(
             settings.threads
@@ -209,9 +209,9 @@ def _bends(size: ShapeSize) -> float:
 
 def _assembly_seconds(size: MeshSize, settings: BakeSettings) -> tuple[float, float]:
     """Seconds to assemble the stiffness, and to plan its elimination."""
-    formulation = formulation_for(settings.formulation, settings.poisson_ratio)
     tets = TETS_PER_NODE * size.nodes
-    return ASSEMBLY_SECONDS[formulation] * tets, PLANNING_SECONDS[formulation] * size.nodes
+    assembly = ASSEMBLY_SECONDS[settings.formulation] * tets
+    return assembly, PLANNING_SECONDS[settings.formulation] * size.nodes
 
 
 def _form_cost(size: MeshSize, settings: BakeSettings, available: int | None) -> BakeCost:
@@ -224,8 +224,8 @@ def _form_cost(size: MeshSize, settings: BakeSettings, available: int | None) ->
 
 
 def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) -> BakeCost:
-    laws = _laws(settings)
-    stiffness = STIFFNESS_BYTES[formulation_for(settings.formulation, settings.poisson_ratio)]
+    laws = ELIMINATION[settings.formulation]
+    stiffness = STIFFNESS_BYTES[settings.formulation]
     table = float(BYTES_PER_PAIR * free**2)
     factor = laws.factor_peak.at(nodes, free)
     if form == "dense":
@@ -246,10 +246,6 @@ def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) 
         int(table + MESH_BYTES * nodes),
         form,
     )
-
-
-def _laws(settings: BakeSettings) -> EliminationLaws:
-    return ELIMINATION[formulation_for(settings.formulation, settings.poisson_ratio)]
 
 
 def _pinned_share(pins: Pins, surface_nodes: int) -> float:

@@ -24,18 +24,12 @@ def boned_cube(factor=1000.0):
     return select(thing)
 
 
-@pytest.mark.at_length
-def test_automatic_takes_the_formulation_that_fits_the_material(palpate, thing):
-    assert thing.palpate.baked_formulation == "linear"
-    thing.palpate.poisson_ratio = 0.49
-    assert "Formulation" in status(thing).changed
-    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
-    assert thing.palpate.baked_formulation == body_of(thing).formulation == "smoothed"
+@pytest.mark.parametrize("kept", ["SMOOTHED", "AUTO"])
+def test_bodies_of_older_files_that_were_linear_by_default_stay_baked(palpate, thing, kept):
+    thing.palpate.baked_formulation, thing.palpate.formulation = "linear", kept
     assert status(thing).changed == ()
-    thing.palpate.formulation = "LINEAR"
-    assert len(status(thing).changed) == 1
-    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
-    assert body_of(thing).formulation == "linear"
+    thing.palpate.poisson_ratio = 0.49
+    assert status(thing).changed == ("Poisson's Ratio", "Formulation")
 
 
 def test_a_stiff_region_is_baked_in_and_embedded(palpate):
@@ -104,6 +98,16 @@ def test_a_compressed_body_is_pressed_and_restored(compressed):
     press_down(compressed)
     assert body_of(compressed).compliance.form == "compressed"
     assert compressed.palpate.body_key == key
+
+
+def test_elements_are_smoothed_unless_linear_ones_are_chosen(compressed):
+    assert compressed.palpate.baked_formulation == body_of(compressed).formulation == "smoothed"
+    assert status(compressed).changed == ()
+    compressed.palpate.formulation = "LINEAR"
+    assert status(compressed).changed == ("Formulation",)
+    assert bpy.ops.palpate.rebuild_body() == {"FINISHED"}
+    assert body_of(compressed).formulation == "linear"
+    assert status(compressed).changed == ()
 
 
 @pytest.mark.at_length

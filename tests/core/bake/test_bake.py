@@ -165,7 +165,7 @@ def test_a_scale_of_one_everywhere_is_none(cube_mesh):
     settings = BakeSettings(pins=PinNodes(fixed), stiffness=TetScale(np.ones(len(mesh.tets))))
     body, _ = bake(mesh, settings)
     assert body.young_scale is None
-    assert body.key == body_key(mesh, fixed, 0.3)
+    assert body.key == body_key(mesh, fixed, 0.3, "smoothed")
 
 
 def test_a_job_tells_a_share_that_never_falls_and_a_time_that_remains(tmp_path, ball):

@@ -14,7 +14,7 @@ from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh, signed_volumes
 from palpate.core.stiffness.assembly import assemble, lame_parameters, shape_gradients
-from palpate.core.stiffness.formulation import FORMULATIONS, formulation_for
+from palpate.core.stiffness.formulation import FORMULATIONS
 
 POISSON_RATIOS = [-0.9, -0.3, 0.0, 0.3, 0.49, 0.4999]
 
@@ -296,17 +296,6 @@ def test_the_compliance_stays_accurate_in_extreme_materials(
     assert (errors < 1e-7 * np.linalg.norm(truth[rows], axis=0)).all()
 
 
-@pytest.mark.parametrize(
-    ("choice", "poisson_ratio", "meant"),
-    [("auto", 0.3, "linear"), ("auto", -0.5, "linear"), ("auto", 0.4, "smoothed"),
-     ("auto", 0.49, "smoothed"), ("linear", 0.4999, "linear"), ("smoothed", 0.0, "smoothed")],
-)  # fmt: skip
-def test_the_automatic_choice_leaves_locking_materials_to_smoothing(choice, poisson_ratio, meant):
-    assert formulation_for(choice, poisson_ratio) == meant
-
-
 def test_unknown_formulations_are_refused(cube_mesh):
-    with pytest.raises(PalpateError, match="linear or smoothed"):
-        formulation_for("quadratic", 0.3)
-    with pytest.raises(PalpateError, match="'auto'"):
-        assemble(cube_mesh[0], 0.3, formulation="auto")
+    with pytest.raises(PalpateError, match="'quadratic'; choose smoothed or linear"):
+        assemble(cube_mesh[0], 0.3, formulation="quadratic")
