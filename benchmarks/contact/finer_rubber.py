@@ -4,7 +4,7 @@
 
 A cube of 6 cells an edge and one of 12 are pressed by the same balls, aside of their nodes, to
 three quarters of a radius: by a contact of Newton's method
-(:mod:`palpate.benchmarks.measuring.shape.pressed_rubber`) on either mesh, and on the coarse one as
+(:mod:`palpate.benchmarks.measuring.shape.pressed_solid`) on either mesh, and on the coarse one as
 *Real* feels and draws it and as *Linear* does. Printed are the force of the fine mesh at 1 Pa, mm2,
 and how far the others are off it: force, and drawn surface, root of the mean square of all that
 moves on the top of the fine mesh.
@@ -22,7 +22,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.benchmarks.measuring.shape.pressed_rubber import Ball, Pressed, PressedRubber
+from palpate.benchmarks.measuring.shape.pressed_solid import Ball, Pressed, PressedSolid
 from palpate.core.body.drawn_map import DrawnMap
 from palpate.core.contact.single_press import press_tool
 from palpate.core.contact.tool.pose import Pose
@@ -45,7 +45,7 @@ RADII, DEPTHS = (0.012, 0.016), (0.25, 0.5, 0.75)
 FORCE, NO_FARTHER = 0.10, 1.02
 
 
-def pressed(rubber: PressedRubber, radius: float) -> Iterator[Pressed]:
+def pressed(rubber: PressedSolid, radius: float) -> Iterator[Pressed]:
     """A body under a ball, to each depth."""
     middles = [PLACE + (1.0 - depth) * radius * OUTWARD for depth in DEPTHS]
     return rubber.by_tools([Ball(middle, radius) for middle in middles], OUTWARD)
@@ -54,8 +54,8 @@ def pressed(rubber: PressedRubber, radius: float) -> Iterator[Pressed]:
 def main() -> int:
     """Print the table; the exit status tells whether the claims hold."""
     coarse = baked_body(*paper_cube(EDGE, COARSE), POISSON_RATIO, 1.0, "smoothed")
-    own = PressedRubber(coarse)
-    fine = PressedRubber(bare_body(*paper_cube(EDGE, FINE), POISSON_RATIO, "smoothed"))
+    own = PressedSolid(coarse)
+    fine = PressedSolid(bare_body(*paper_cube(EDGE, FINE), POISSON_RATIO, "smoothed"))
     top = np.flatnonzero(fine.solid.positions[:, 2] > EDGE - 1e-9)
     drawn = DrawnMap.hang(fine.solid.positions[top], coarse)
     real = shape(coarse, "real")

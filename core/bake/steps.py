@@ -135,6 +135,8 @@ def bake(
         )
     with _timed(report.seconds, "plan"):
         plan = plan_surface_inverse(mesh, stiffness, fixed, progress=work.begin("plan"))
+        # The plan has its own copy, and this one is a tenth of what a bake holds.
+        del stiffness
         form, warnings = affordable_form(plan, settings, available())
     with _timed(report.seconds, "compliance"), _explained(misfit):
         compliance = _compliance(plan, form, mesh, settings, work)

@@ -1,6 +1,6 @@
-"""Rigid tools pressed into a body of rubber: Newton's method on the energy of body and contact.
+"""Rigid tools pressed into a body of a law: Newton's method on the energy of body and contact.
 
-The body is the neo-Hookean solid with smoothed strains on its own tetrahedra, the contact a penalty
+The body is the solid of its law, on its own tetrahedra and strains, the contact a penalty
 at three places of each surface triangle. Nothing of Palpate's contact is used.
 """
 
@@ -100,7 +100,7 @@ class Pressed:
 
 
 @dataclass(frozen=True, eq=False)
-class PressedRubber:
+class PressedSolid:
     """A body with smoothed strains, to be pressed."""
 
     body: SoftBody
