@@ -1,4 +1,4 @@
-"""Played in the windowed Blender by `benchmarks/shape/redraw.py`, with vertex counts.
+"""Played in the windowed Blender by `benchmarks/drawn/redraw.py`, with vertex counts.
 
 Milliseconds of the processor, of all threads, medians: of what hands a step over (own), of
 evaluating the mesh, and of drawing it; megabytes of memory that the system hands out page by page

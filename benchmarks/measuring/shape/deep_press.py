@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from palpate.benchmarks.measuring.shape.pressed_solid import (
     Presser,
     Wall,
 )
+from palpate.benchmarks.measuring.standing import standing_body
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.place import Place, nearest_place
 from palpate.core.contact.single_press import press_tool, touch_at
@@ -52,7 +54,10 @@ DEEPEST = 0.4  # of the part's thickness, what a ball goes in at most
 
 @cache
 def mesh_of(name: str) -> tuple[TetMesh, NDArray[np.int64]]:
-    """Tetrahedra and pins of one of :data:`BODIES`."""
+    """Tetrahedra and pins of one of :data:`BODIES`, or what a bake makes of a mesh's file."""
+    if Path(name).is_file():
+        body = standing_body(Path(name))
+        return body.mesh, body.fixed
     if name == "cube":
         return paper_cube(cells=10)
     if name == "bar":
@@ -98,12 +103,14 @@ class Bench:
     shape: Shape
 
     @classmethod
-    def of(cls, name: str, law: str) -> Bench:
-        """One of :data:`BODIES`, with smoothed strains, of a law of :data:`LAWS` and 1 Pa."""
-        body = replace(baked_body(*mesh_of(name), LAWS[law], 1.0, "smoothed"), law=law)
+    def of(cls, name: str, law: str, poisson_ratio: float | None = None) -> Bench:
+        """A body with smoothed strains, of a law of :data:`LAWS` and 1 Pa; see :func:`mesh_of`."""
+        ratio = LAWS[law] if poisson_ratio is None else poisson_ratio
+        body = replace(baked_body(*mesh_of(name), ratio, 1.0, "smoothed"), law=law)
         real = shape(body, "real")
         real.wait_for(body.mesh.surface_nodes[:1])
-        told = name if law == RUBBER else f"{name}, {law}"
+        told = Path(name).stem if Path(name).is_file() else name
+        told = told if law == RUBBER else f"{told}, {law}"
         return cls(told, name in WALLED, body, PressedSolid(body), real)
 
     def at_place(self, place: Place, number: int) -> Iterator[Row]:

@@ -1,4 +1,4 @@
-"""Started in a Blender as a module by `benchmarks/shape/large_mesh.py`: PACKAGE and vertex counts.
+"""Started in a Blender as a module by `benchmarks/drawn/large_mesh.py`: PACKAGE and vertex counts.
 
 Prints a line of JSON for each count: milliseconds, of the thread's processor time and by the clock.
 """

@@ -144,6 +144,19 @@ class PressedSolid:
         rest = spread.places(np.zeros_like(self.solid.positions))
         yield from self._followed(spread, (_Held(rest + way, HOLD * self.edge) for way in ways))
 
+    def by_nodes(self, nodes: NDArray[np.int64], ways: Array) -> Iterator[Pressed]:
+        """The body with free nodes (k,) of its mesh held where each of ``ways`` (m, k, 3) leads.
+
+        Raises
+        ------
+        ArithmeticError
+            Newton's method does not come to an end.
+        """
+        corners = np.repeat(np.searchsorted(self.solid.free, nodes)[:, None], 3, axis=1)
+        spread = _Spread(corners, np.tile([1.0, 0.0, 0.0], (len(nodes), 1)), self.solid)
+        rest = spread.places(np.zeros_like(self.solid.positions))
+        yield from self._followed(spread, (_Held(rest + way, HOLD * self.edge) for way in ways))
+
     @cached_property
     def edge(self) -> float:
         """Of a usual triangle, metres."""
@@ -243,7 +256,8 @@ class _Held:
     def pushes(self, places: Array) -> Pushes:
         missed = self.goal - places
         energy = 0.5 * self.stiffness * float((missed * missed).sum())
-        return Pushes(energy, self.stiffness * missed, self.stiffness * np.eye(3)[None])
+        stiffness = np.tile(self.stiffness * np.eye(3), (len(places), 1, 1))
+        return Pushes(energy, self.stiffness * missed, stiffness)
 
 
 @dataclass(frozen=True, eq=False)

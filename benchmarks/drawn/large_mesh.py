@@ -1,6 +1,6 @@
 """What Palpate adds to a redraw and to the start of a press where the drawn mesh is large.
 
-    python benchmarks/shape/large_mesh.py [--quick]
+    python benchmarks/drawn/large_mesh.py [--quick]
 
 A ball of 3,000, 126,000 and 504,000 vertices (``--quick``: without the last) in a Blender as a
 module, with the package that `make package` left:

@@ -1,6 +1,6 @@
 """What it takes to keep the drawn surface of a body out of itself, and how deep it still is.
 
-    python benchmarks/shape/folds.py [--times N]
+    python benchmarks/drawn/folds.py [--times N]
 
 The plush hare, as *Real* draws it: its ears are led to each other, beside each other, and over its
 face; processor's time of a picture, medians. The exit status tells whether what is left is less

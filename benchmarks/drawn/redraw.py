@@ -1,6 +1,6 @@
 """What a step of a press costs beside a shape key and beside Blender's own Elastic Grab.
 
-    python benchmarks/shape/redraw.py [--quick]
+    python benchmarks/drawn/redraw.py [--quick]
 
 A ball of 3,000, 126,000 and 504,000 vertices (``--quick``: without the last) in the windowed
 Blender, all in one run: a live layer whose vertices all move under a fingertip, a shape key that is
