@@ -95,7 +95,9 @@ class ForceLoop:
         else:
             touched, laid = prop.native
         moves = prop is not None
-        begun = replace(settings.servo, relaxation=()) if moves else settings.servo
+        begun = settings.servo
+        if moves and tip.tool is None:
+            begun = replace(begun, relaxation=())
         servo = servo_on(touched, begun, rate_hz=rate_hz, prop=laid)
         recorder = Recorder(servo, rate_hz, in_world=moves)
         return cls(servo, settings, recorder, drawn, touched, tip, prop)
@@ -212,8 +214,8 @@ class ForceLoop:
         turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
         chosen = self.settings.servo
         self.firming.tool = None if chosen.static_friction else self.tip.tool
-        if self.prop is not None:
-            # Nobody has tried how one that moves gives way with time.
+        if self.prop is not None and self.tip.tool is None:
+            # Under points what moves does not give way with time as it should.
             chosen = replace(chosen, relaxation=())
         self.servo.set(replace(chosen, enabled=self._enabled, orientations=turns))
 

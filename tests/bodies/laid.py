@@ -44,6 +44,7 @@ class Laid:
         floors=None,
         gravity=INTO_CORNER,
         max_force=None,
+        relaxation=(),
     ):
         """Fingers of the servo, the first of which begins at ``start``, before the world is turned;
         without a ``max_force`` they have no motors.
@@ -60,6 +61,7 @@ class Laid:
                 static_friction=friction,
                 dynamic_friction=friction,
                 coupling=Coupling(800.0, 4.0, True),
+                relaxation=relaxation,
             ),
             prop=native_prop(self.body, self.native, floors, placement, settings),
             max_force=max_force,

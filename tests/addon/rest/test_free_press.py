@@ -56,6 +56,24 @@ def test_a_press_from_above_feels_the_floor_and_is_given_back(free_cube, tip, se
     assert lying_state(free_cube) == before
 
 
+def test_what_gives_way_with_time_does_so_under_a_tool(free_cube, tip, sessions, states):
+    free_cube.palpate.relaxation = "MEMORY_FOAM"
+    session = begin(sessions, states, free_cube)
+    session.post(states.SetDown(OVER, 0))
+    session.tick()
+    end = tuple(np.add(OVER, (0.0, 0.0, -0.006)))
+    session.post(states.Move(end, 0))
+
+    def finger():
+        return session.loop.servo.snapshot().fingers[0]
+
+    wait(session, lambda: np.allclose(finger().probe, end, atol=1e-6))
+    at_first = finger().contact_force[2]
+    assert at_first > 0.0
+    wait(session, lambda: finger().contact_force[2] < 0.6 * at_first)
+    session.post(states.Moment.CANCEL)
+
+
 def test_a_press_from_the_side_takes_it_along_and_enter_keeps_it_there(
     free_cube, tip, sessions, states
 ):
