@@ -70,6 +70,8 @@ class PALPATE_OT_press_frames(Pressing, bpy.types.Operator):
         name="Forces",
         description="Table (CSV) of force, area, pressure and depth in each frame; empty for none",
         subtype="FILE_PATH",
+        # Without it Blender 5.2 crashes where a script gives a path that begins with "//".
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     current_only: bpy.props.BoolProperty(
         name="This Frame Only",

@@ -52,7 +52,9 @@ class PALPATE_OT_save_recording(Acting, bpy.types.Operator):
     bl_label = "Save Recording..."
     bl_description = "Write the recorded ticks to a file, also while pressing goes on"
 
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    filepath: bpy.props.StringProperty(
+        subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE", "PATH_SUPPORTS_BLEND_RELATIVE"}
+    )
     filter_glob: bpy.props.StringProperty(default="*.csv;*.npz", options={"HIDDEN"})
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
     suffix: bpy.props.EnumProperty(
