@@ -26,6 +26,9 @@ from soft_scene import (
 from without_palpate import without_palpate
 
 YIELD = 0.001
+# Dents are drawn deeper than their tool (docs/materials.md), by up to 5.4 % in seven bakes of the
+# cube, whose tetrahedra differ.
+DEEPER = 1.1
 
 
 @pytest.fixture(scope="module")
@@ -244,12 +247,13 @@ def test_a_fingertip_leaves_its_depth_less_the_yield_depth(clay):
     assert bpy.ops.palpate.stroke(place=TOP, radius=0.02, depth=depth) == {"FINISHED"}
     # It has a sphere's place there, which a parabola rounds off beside the tool.
     left = -moved(clay, "Press 1")[apex, 2]
-    assert left == pytest.approx(depth - YIELD, abs=0.02 * depth)
+    assert 0.98 * depth < left + YIELD < DEEPER * depth
 
 
 def test_an_elastic_object_keeps_all_of_a_press(fine):
     assert bpy.ops.palpate.stroke(place=TOP, radius=0.02, depth=0.004) == {"FINISHED"}
-    assert -moved(fine, "Press 1")[:, 2].min() == pytest.approx(0.004, rel=0.02)
+    deep = -moved(fine, "Press 1")[:, 2].min()
+    assert 0.98 * 0.004 < deep < DEEPER * 0.004
 
 
 def test_an_empty_that_taps_the_same_place_twice_leaves_one_imprint(clay, sessions, states):
