@@ -20,14 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from palpate.benchmarks.measuring.shape.deep_press import BALL_EDGES, BODIES, Bench, places_on
-from palpate.benchmarks.shape.strokes_at_depth import strokes
+from palpate.benchmarks.shape.strokes_at_depth import shaped, strokes
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.single_press import press_tool
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.law.of_material import RUBBER
-from palpate.core.shape.felt import held_loads, loads_of
-from palpate.core.shape.found_behind import FoundBehind
+from palpate.core.mesh.surface import Surface
+from palpate.core.shape.felt import loads_of
 from palpate.core.shape.meeting import settled
 
 Array = NDArray[np.float64]
@@ -42,12 +42,11 @@ def change_of_volume(body: SoftBody, moved: Array) -> float:
     """Of what the surface encloses, as a share; ``moved`` (n, 3) of the free surface nodes."""
     places = body.mesh.nodes.copy()
     places[body.compliance.free_surface] += moved
-
-    def enclosed(nodes: Array) -> float:
-        i, j, k = (nodes[body.mesh.surface_triangles[:, corner]] for corner in range(3))
-        return float((i * np.cross(j, k)).sum()) / 6.0
-
-    return enclosed(places) / enclosed(body.mesh.nodes) - 1.0
+    now, before = (
+        Surface(nodes, body.mesh.surface_triangles).signed_volume
+        for nodes in (places, body.mesh.nodes)
+    )
+    return now / before - 1.0
 
 
 def drawn(bench: Bench) -> Iterator[tuple[str, Array, Array]]:
@@ -61,10 +60,7 @@ def drawn(bench: Bench) -> Iterator[tuple[str, Array, Array]]:
             yield f"ball {number}, {share:g}", met.linear, met.displacements
     for name, held, shares in strokes(bench):
         answer = held.answer(shares, 1.0)
-        found = FoundBehind(body, bench.shape, 1.0)
-        loads = held_loads(body, answer.nodes, answer.forces)
-        yield name, answer.displacements, found.at_rest(loads).displacements
-        found.close()
+        yield name, answer.displacements, shaped(bench, answer).displacements
 
 
 def main() -> int:

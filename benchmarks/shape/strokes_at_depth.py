@@ -25,15 +25,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.benchmarks.measuring.shape.deep_press import BODIES, LAWS, Bench
+from palpate.benchmarks.measuring.shape.deep_press import BODIES, LAWS, Bench, farthest_off
 from palpate.core.contact.near_field.surface_shape import node_normals
 from palpate.core.contact.place import nearest_place
-from palpate.core.grip.held_patch import HeldPatch
+from palpate.core.grip.held_patch import Answer, HeldPatch
 from palpate.core.grip.motions import moved, turned
 from palpate.core.grip.patch import Grip
 from palpate.core.law.of_material import RUBBER
 from palpate.core.shape.felt import held_loads
-from palpate.core.shape.found_behind import FoundBehind
+from palpate.core.shape.found_behind import FoundBehind, Shaped
 
 Array = NDArray[np.float64]
 
@@ -77,27 +77,30 @@ def strokes(bench: Bench) -> Iterator[tuple[str, HeldPatch, Array]]:
     yield "turned by 90", held, turned(np.pi / 2)
 
 
+def shaped(bench: Bench, answer: Answer) -> Shaped:
+    """What *Real* makes of a linear answer."""
+    found = FoundBehind(bench.body, bench.shape, 1.0)
+    try:
+        return found.at_rest(held_loads(bench.body, answer.nodes, answer.forces))
+    finally:
+        found.close()
+
+
 def row(bench: Bench, name: str, held: HeldPatch, shares: Array) -> Row:
     """One stroke beside the truth."""
-    body, surface = bench.body, bench.solid.solid.surface
+    surface = bench.solid.solid.surface
     answer = held.answer(shares, 1.0)
-    found = FoundBehind(body, bench.shape, 1.0)
-    told = found.at_rest(held_loads(body, answer.nodes, answer.forces))
-    found.close()
+    told = shaped(bench, answer)
     way = answer.displacements[held.nodes]
     ways = np.linspace(0.0, 1.0, STEPS + 1)[1:, None, None] * way
     *_, true = bench.solid.by_nodes(answer.nodes, ways)
     drawn = true.displacements[surface]
-    largest = float(np.linalg.norm(drawn, axis=1).max())
     pushes = true.nodal_forces[np.searchsorted(bench.solid.solid.free, answer.nodes)]
     return Row(
         f"{bench.name}, {name}",
         float((pushes * way).sum() / (answer.forces * way).sum()),
         told.share,
-        *(
-            float(np.linalg.norm(one - drawn, axis=1).max()) / largest
-            for one in (answer.displacements, told.displacements)
-        ),
+        *(farthest_off(one, drawn) for one in (answer.displacements, told.displacements)),
     )
 
 

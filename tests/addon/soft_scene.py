@@ -141,11 +141,18 @@ def wait(session: Any, condition: Callable[[], bool], seconds: float = 60.0) -> 
 
 def lead(session: Any, states: ModuleType, start: Sequence[float], by: Sequence[float]) -> None:
     """Set the finger down and lead it by a way, and wait until all is at rest."""
+    at_rest(session, set_off(session, states, start, by))
+
+
+def set_off(
+    session: Any, states: ModuleType, start: Sequence[float], by: Sequence[float]
+) -> tuple[float, ...]:
+    """Set the finger down and have it go a way; where to."""
     session.post(states.SetDown(start, 0))
     session.tick()
     end = tuple(np.add(start, by))
     session.post(states.Move(end, 0))
-    at_rest(session, end)
+    return end
 
 
 def at_rest(session: Any, end: tuple[float, ...]) -> None:
@@ -294,6 +301,12 @@ def seen_places(thing: bpy.types.Object) -> NDArray[np.float32]:
     bpy.context.view_layer.update()
     graph = bpy.context.evaluated_depsgraph_get()
     return _flat(thing.evaluated_get(graph).data.vertices).reshape(-1, 3)
+
+
+def sag(thing: bpy.types.Object) -> NDArray[np.float32]:
+    """How far each vertex is displaced, (p, 3), local units."""
+    bpy.context.view_layer.update()
+    return seen_places(thing) - rest_places(thing)
 
 
 def world_extents(thing: bpy.types.Object) -> NDArray[np.float64]:

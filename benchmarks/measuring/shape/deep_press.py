@@ -167,14 +167,11 @@ class Bench:
         """One press beside the truth."""
         force, linear = -float(true.force @ outward), float(touch.force @ outward)
         surface = true.displacements[self.solid.solid.surface]
-        largest = float(np.linalg.norm(surface, axis=1).max())
-
-        def error(drawn: Array) -> float:
-            return float(np.linalg.norm(drawn - surface, axis=1).max()) / largest
-
         met = settled(self.body, self.shape, loads_of([touch]), 1.0)
         real = felt(self.shape, [touch], 1.0)
-        drawn = (error(met.linear), error(met.displacements))
+        linear_drawn, real_drawn = (
+            farthest_off(one, surface) for one in (met.linear, met.displacements)
+        )
         pressed = float(real.touches[0].force @ outward)
         return Row(
             f"{self.name}, {name}",
@@ -184,8 +181,14 @@ class Bench:
             linear / force,
             pressed / force,
             real.firmness.is_whole,
-            drawn,
+            (linear_drawn, real_drawn),
         )
+
+
+def farthest_off(drawn: Array, true: Array) -> float:
+    """The largest error of displacements (n, 3), over the largest of the true ones."""
+    error = np.linalg.norm(drawn - true, axis=1).max()
+    return float(error / np.linalg.norm(true, axis=1).max())
 
 
 def places_on(body: SoftBody, count: int, rng: np.random.Generator) -> Iterator[Place]:

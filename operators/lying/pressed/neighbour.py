@@ -16,12 +16,13 @@ from .. import rest_layer
 from ..before import Before
 from ..free_body import Lying, above
 from ..laid import move
-from ..placement import frame_at
+from ..placement import apart, frame_at
 
 Load = tuple[NDArray[np.int64], NDArray[np.float64]]
 
-# It is drawn anew when it has moved or given way by more than this share of its size.
-SEEN = 1e-5
+# Share of its size by which an object that was pressed has moved: less is the servo's rounding. And
+# by which one is drawn anew.
+MOVED, SEEN = 1e-3, 1e-5
 
 
 @dataclass(eq=False)
@@ -55,7 +56,7 @@ class Neighbour:
             return
         nodes, forces = load
         displacements = self.body.deform(self.body.mesh.surface_nodes[nodes], forces)
-        if self._is_shown(placement, displacements):
+        if self._away(placement, displacements) < SEEN:
             return
         self._shown = placement, displacements
         frame = self.drawn.frame
@@ -76,24 +77,15 @@ class Neighbour:
         """Whether it is elsewhere, or another shape, than it came to rest before."""
         if self._shown is None:
             return False
-        placement, displacements = self._shown
-        rested = self.rested.rest.placement, self.rested.displacements
-        return self._apart(rested, (placement, displacements)) > 1e-3
+        return self._away(self.rested.rest.placement, self.rested.displacements) > MOVED
 
-    def _is_shown(self, placement: Pose, displacements: NDArray[np.float64]) -> bool:
-        shown = self._shown
-        return shown is not None and self._apart(shown, (placement, displacements)) < SEEN
-
-    def _apart(
-        self,
-        one: tuple[Pose, NDArray[np.float64]],
-        other: tuple[Pose, NDArray[np.float64]],
-    ) -> float:
-        """How far two states are apart, as a share of its size."""
-        (first, bent), (second, otherwise) = one, other
-        turned = np.abs(first.rotation - second.rotation).max()
-        gone = np.abs(first.position - second.position).max()
-        return float(max(turned, max(gone, np.abs(bent - otherwise).max()) / self.drawn.size))
+    def _away(self, placement: Pose, displacements: NDArray[np.float64]) -> float:
+        """How far a state is from what is shown, as a share of its size."""
+        if self._shown is None:
+            return np.inf
+        shown, bent = self._shown
+        size = self.drawn.size
+        return max(apart(shown, placement, size), np.abs(bent - displacements).max() / size)
 
 
 def neighbour(

@@ -21,12 +21,9 @@ from ..coming_down import Alone, lying_bodies, show
 from ..free_body import LANDING, Lying, above
 from ..free_pile import FreePile
 from ..laid import lay, move
-from ..placement import frame_at, placement_of
+from ..placement import apart, frame_at, placement_of
 from ..together import together
-from .neighbour import Neighbour, neighbour
-
-# Share of its size by which an object that was pressed has moved: less is the servo's rounding.
-MOVED = 1e-3
+from .neighbour import MOVED, Neighbour, neighbour
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,10 +134,8 @@ class PressedProp:
 
     def has_moved(self, drawn: DrawnBody) -> bool:
         """Whether a body is elsewhere than it came to rest before."""
-        now, start = placement_of(drawn.frame), self.start
-        off = np.abs(now.rotation - start.rotation).max() * drawn.size
-        moved = max(off, np.abs(now.position - start.position).max()) > MOVED * drawn.size
-        return bool(moved) or any(other.has_moved for other in self.others)
+        moved = apart(placement_of(drawn.frame), self.start, drawn.size) > MOVED
+        return moved or any(other.has_moved for other in self.others)
 
     def beyond_rest(self, drawn: DrawnBody, moved: NDArray[np.float32]) -> NDArray[np.float32]:
         """Displacements (3 p,) of the drawn vertices beside those by which it rested, and none of

@@ -14,6 +14,7 @@ from soft_scene import (
     lying_state,
     part,
     seen_places,
+    set_off,
     wait,
 )
 
@@ -59,10 +60,7 @@ def test_a_press_from_above_feels_the_floor_and_is_given_back(free_cube, tip, se
 def test_what_gives_way_with_time_does_so_under_a_tool(free_cube, tip, sessions, states):
     free_cube.palpate.relaxation = "MEMORY_FOAM"
     session = begin(sessions, states, free_cube)
-    session.post(states.SetDown(OVER, 0))
-    session.tick()
-    end = tuple(np.add(OVER, (0.0, 0.0, -0.006)))
-    session.post(states.Move(end, 0))
+    end = set_off(session, states, OVER, (0.0, 0.0, -0.006))
 
     def finger():
         return session.loop.servo.snapshot().fingers[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import error_of, layer_names, part, rest_places, seen_places, select
+from soft_scene import error_of, layer_names, part, sag, seen_places, select
 
 RADIUS = 0.012
 # Of friction they know nothing in the first tick: they slide by as much, metres.
@@ -19,12 +19,6 @@ def stacked(stack):
     select(other)
     assert bpy.ops.palpate.settle() == {"FINISHED"}
     return other
-
-
-def sag(thing):
-    """How far each vertex is displaced, (p, 3), metres."""
-    bpy.context.view_layer.update()
-    return seen_places(thing) - rest_places(thing)
 
 
 def matrices(*things):

@@ -11,8 +11,7 @@ from soft_scene import (
     lead,
     lying_state,
     part,
-    rest_places,
-    seen_places,
+    sag,
     select,
     wait,
 )
@@ -27,12 +26,6 @@ def upper(stack, tip):
     made = stack()
     select(made)
     return made
-
-
-def sag(thing):
-    """How far each vertex is displaced, (p, 3), metres."""
-    bpy.context.view_layer.update()
-    return seen_places(thing) - rest_places(thing)
 
 
 def height(thing):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 from mouse_scene import end_press, over_the_view, own_copy, type_key
+from random_drags import seen_points
 from stage import Pixel, Stage, Wait, at_length
 
 from bl_ext.user_default.palpate.addon.overlay.reading import Reading, readings
@@ -111,28 +112,19 @@ def two_empties_press_as_the_animation_leads_them(stage: Stage) -> Wait:
 
 def a_press_on_a_stack_moves_what_is_beneath_and_escape_gives_all_back(stage: Stage) -> Wait:
     yield from _open(stage, STACKED, "Lemon")
-    before = [_lies(name) for name in JELLY]
+    before = [seen_points(name) for name in JELLY]
     yield from _press(stage)
     # The front of the uppermost, from which a push presses it into the one beneath, too.
-    x, y = stage.pixel(tuple(_lies("Lemon").mean(axis=0)))
+    x, y = stage.pixel(tuple(seen_points("Lemon").mean(axis=0)))
     yield from stage.drag([(x, y), (x + 4, y - 40)], steps=4, release=False)
     yield from stage.until(lambda: _figures()[0].force > 0.002, "the force")
     yield from stage.picture("stack-pressed")
-    moved = [np.abs(_lies(name) - lay).max() for name, lay in zip(JELLY, before, strict=True)]
+    moved = [np.abs(seen_points(name) - lay).max() for name, lay in zip(JELLY, before, strict=True)]
     assert min(moved) > 1e-5, moved
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
     yield from end_press(stage)
     for name, lay in zip(JELLY, before, strict=True):
-        np.testing.assert_allclose(_lies(name), lay, rtol=0, atol=1e-6)
-
-
-def _lies(name: str) -> np.ndarray:
-    """Vertices (p, 3) as they are seen, in the world."""
-    seen = bpy.data.objects[name].evaluated_get(bpy.context.evaluated_depsgraph_get())
-    flat = np.empty(3 * len(seen.data.vertices), dtype=np.float32)
-    seen.data.vertices.foreach_get("co", flat)
-    matrix = np.array(seen.matrix_world)
-    return flat.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+        np.testing.assert_allclose(seen_points(name), lay, rtol=0, atol=1e-6)
 
 
 def _open(stage: Stage, file: str, name: str) -> Wait:
