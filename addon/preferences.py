@@ -17,6 +17,12 @@ def colour(name: str, default: tuple[float, float, float, float]) -> object:
     )
 
 
+def _lead_there(self: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
+    """Name a folder beside the .blend in full, which else were another one in the next file."""
+    if self.body_folder.startswith("//"):
+        self.body_folder = bpy.path.abspath(self.body_folder) if bpy.data.filepath else ""
+
+
 class PalpatePreferences(bpy.types.AddonPreferences):
     bl_idname = PACKAGE
 
@@ -65,6 +71,7 @@ class PalpatePreferences(bpy.types.AddonPreferences):
         "Body Folder",
         "Where bodies of files not yet saved are kept. Empty: the extension's own user folder",
         subtype="DIR_PATH",
+        update=_lead_there,
     )
     probe_color: colour("Probe", (1.0, 0.55, 0.1, 1.0))
     contact_color: colour("Contact", (0.15, 0.75, 1.0, 1.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,12 @@ def as_lines(figures: dict[str, object]) -> str:
     """Figures one a line, without empty ones; numbers to six digits."""
     known = {name: value for name, value in figures.items() if value is not None and value != []}
     width = max(map(len, known), default=0)
-    return "\n".join(
-        f"{name.replace('_', ' '):{width}}  {_text(value)}" for name, value in known.items()
-    )
+    return "\n".join(f"{_words(name):{width}}  {_text(value)}" for name, value in known.items())
+
+
+def _words(name: str) -> str:
+    """The name of a figure as it is read: of `p99_9` the point, too."""
+    return re.sub(r"(?<=\d)_(?=\d)", ".", name).replace("_", " ")
 
 
 def _text(value: object) -> str:
@@ -29,9 +33,7 @@ def _text(value: object) -> str:
         case dict() if not value:
             return "none"
         case dict():
-            return ", ".join(
-                f"{name.replace('_', ' ')} {_text(one)}" for name, one in value.items()
-            )
+            return ", ".join(f"{_words(name)} {_text(one)}" for name, one in value.items())
         case list() if _is_numeric(value):
             return _rows(_without_rounding(np.array(value)))
         case list():

@@ -93,8 +93,9 @@ def folder_beside(blend: Path) -> Path:
 
 def _unsaved_folder() -> Path:
     chosen = preferences().body_folder
-    if chosen:
-        return Path(bpy.path.abspath(chosen))
+    # Beside a .blend that is not saved is nowhere; preferences of before may have that.
+    if chosen and not chosen.startswith("//"):
+        return Path(chosen)
     if PACKAGE.startswith("bl_ext."):
         return Path(bpy.utils.extension_path_user(PACKAGE, path="bodies", create=True))
     return Path(bpy.utils.user_resource("DATAFILES", path=FOLDER, create=True))

@@ -24,6 +24,7 @@ def test_numbers_of_nodes_keep_all_digits():
 def test_what_is_not_known_is_not_told_and_names_go_with_their_figures():
     figures = {"fit": None, "warnings": [], "seconds": {"bake": 0.25, "pin": 1.0}}
     assert as_lines(figures) == "seconds  bake 0.25, pin 1"
+    assert as_lines({"lateness_us": {"p99_9": 40.0}}) == "lateness us  p99.9 40"
     assert as_lines({"where": ["a", None]}) == "where  a, None"
     assert as_lines({"surface": [float("nan"), 1.0, 2.0]}) == "surface  nan 1 2"
     assert as_lines({"faults": {}}) == "faults  none"
