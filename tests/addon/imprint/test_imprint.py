@@ -26,9 +26,9 @@ from soft_scene import (
 from without_palpate import without_palpate
 
 YIELD = 0.001
-# Dents are drawn deeper than their tool (docs/materials.md), by up to 5.4 % in seven bakes of the
-# cube, whose tetrahedra differ.
-DEEPER = 1.1
+# Dents are drawn deeper than their tool (docs/materials.md): by up to 12 % in 22 bakes of the cube,
+# whose tetrahedra differ, and by 2 % in the middle one.
+DEEPER = 1.2
 
 
 @pytest.fixture(scope="module")
