@@ -23,7 +23,17 @@ from pathlib import Path
 from blenders import blenders
 from package_all import table
 from platforms import PLATFORMS
-from release_table import CANNOT, FAILED, NOT_YET, PASSED, Cell, cells_of, rows, verdict
+from release_table import (
+    CANNOT,
+    FAILED,
+    NOT_YET,
+    PASSED,
+    Cell,
+    cells_of,
+    closing_line,
+    rows,
+    verdict,
+)
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 REPORTS = REPOSITORY / "build" / "reports"
@@ -129,9 +139,8 @@ def outcome(step: Step, run: Run) -> Outcome:
     seconds = time.monotonic() - started
     word = PASSED if done.returncode == 0 else FAILED
     report = _read(step.report)
-    closing = next((line for line in reversed(report.splitlines()) if line.strip()), "")
     against = tuple(cell.place for cell in step.shows if verdict(word, cell, report) == FAILED)
-    return Outcome(word, seconds, closing, against)
+    return Outcome(word, seconds, closing_line(report), against)
 
 
 def _read(report: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -60,6 +61,15 @@ def verdict(word: str, cell: Cell, report: str) -> str:
         return word
     wrong = (f"FAILED {cell.tests}", f"ERROR {cell.tests}")
     return FAILED if any(line.startswith(wrong) for line in report.splitlines()) else PASSED
+
+
+def closing_line(report: str) -> str:
+    """Return how a report ends; of cargo, which closes each of its programs, the sum of all."""
+    of_cargo = re.findall(r"^test result: \w+\. (\d+) passed; (\d+) failed", report, re.MULTILINE)
+    if of_cargo:
+        passed, failed = (sum(map(int, numbers)) for numbers in zip(*of_cargo, strict=True))
+        return f"{passed} passed, {failed} failed"
+    return next((line for line in reversed(report.splitlines()) if line.strip()), "")
 
 
 def rows(said: Mapping[str, list[str]]) -> list[tuple[str, ...]]:

@@ -5,7 +5,7 @@ import subprocess
 import pytest
 import release_check
 from release_check import main, steps
-from release_table import COLUMNS, cells_of, verdict
+from release_table import COLUMNS, cells_of, closing_line, verdict
 
 LINT, CORE = "make lint", "make test-core"
 
@@ -97,6 +97,13 @@ def test_a_failure_speaks_only_against_what_it_is_of():
     assert verdict("failed", installs, "no package\n") == "failed"
     own = "ERROR tests/addon/test_installation.py::test_c\n1 error, 700 passed in 9 s\n"
     assert verdict("failed", installs, own) == "failed"
+
+
+def test_of_cargo_all_programs_are_told():
+    line = "test result: {}. {} passed; {} failed; 1 ignored; 0 measured\n"
+    report = line.format("ok", 85, 0) + line.format("FAILED", 19, 2) + "Doc-tests palpate_servo\n"
+    assert closing_line(report) == "104 passed, 2 failed"
+    assert closing_line("...\n3000 passed in 100 s\n\n") == "3000 passed in 100 s"
 
 
 def test_what_cannot_be_run_is_no_failure_and_is_not_run(ran, capsys, monkeypatch):
