@@ -261,10 +261,11 @@ def test_the_simulated_device_presses_is_unplugged_and_comes_back(sessions, stat
     wait(session, lambda: session.snapshot.touching)
     wait(session, lambda: np.linalg.norm(session.snapshot.output_force) > 0.01)
     session.loop.simulated.unplug()
-    wait(session, lambda: session.state.phase is states.Phase.LOST)
+    # A computer that stands still just then may be told before.
+    wait(session, lambda: "plug" in session.state.message)
+    assert session.state.phase is states.Phase.LOST
     assert not moved(thing, "Palpate Live").any()
     assert not np.any(session.snapshot.output_force)
-    assert "plug" in session.state.message
     session.loop.simulated.plug_in()
     wait(session, lambda: session.state.phase is states.Phase.FEELING)
     wait(session, lambda: session.snapshot.touching)
