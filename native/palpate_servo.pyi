@@ -1112,13 +1112,14 @@ class Relaxation:
 
     def relaxed(
         self,
-        linear: ArrayLike,
+        linear: ArrayLike | None,
         forces: ArrayLike,
         steps: int,
         turning: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """Displacements after so many steps from the linear ones of a load: ``forces`` that keep
-        their directions and ``turning`` ones that work on the linear displacements.
+        their directions and ``turning`` ones that work on the linear displacements. These are
+        found in single precision where they are None, for which steps make up.
         """
 
     def led(

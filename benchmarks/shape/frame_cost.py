@@ -14,8 +14,8 @@ after the other, with all at hand that the shapes prepare in the background:
 Times are the thread's processor time, medians, so that other programs count only by the caches and
 the memory they take; ``clock`` is the median by the clock.
 
-Claim: at 1.7k nodes every shape leaves 60 frames a second. ``--quick`` leaves out ``mouse-20k``,
-whose body is baked first and kept in build/frame-cost.
+Claim: a frame takes no more than 10 ms at 1.7k nodes, and 16 ms at 20k. ``--quick`` leaves out
+``mouse-20k``, whose body is baked first and kept in build/frame-cost.
 """
 
 from __future__ import annotations
@@ -48,8 +48,9 @@ from palpate.core.stiffness.pins import PinNodes
 KEPT = Path(__file__).resolve().parents[2] / "build" / "frame-cost"
 TOUCHES = 3
 FRAMES = 60
-LARGEST_FRAME = 1 / 60
-CLAIMED_NODES = 2000
+# Seconds of a frame that are claimed.
+LARGEST_FRAME = {"mouse-1.7k": 0.010, "mouse-20k": 0.016}
+FEW_NODES = 2000
 
 
 def baked(measured: MeasuredBody) -> SoftBody:
@@ -94,7 +95,7 @@ def measure(body: SoftBody, name: ShapeName, touches: list[Load], draw: float) -
         for touch in touches:
             made.wait_for(touch.triangle)
         frame = in_turn(touches, lambda load: made.displacements(load.triangle, load.nodal_forces))
-        few = len(body.mesh.nodes) > CLAIMED_NODES
+        few = len(body.mesh.nodes) > FEW_NODES
         processor, clock = median_times(frame, FRAMES // 6 if few else FRAMES)
     finally:
         made.close()
@@ -113,7 +114,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="leave out mouse-20k")
     parser.add_argument("--shapes", nargs="+", choices=list(MAKERS), default=list(MAKERS))
     options = parser.parse_args()
-    names = ["mouse-1.7k"] if options.quick else ["mouse-1.7k", "mouse-20k"]
+    names = list(LARGEST_FRAME)[: 1 if options.quick else None]
     is_kept = True
     for body_name in names:
         body = baked(stored_body(body_name))
@@ -126,8 +127,9 @@ def main() -> int:
             if name not in options.shapes:
                 continue
             seconds = measure(body, name, touches, draw)
-            if nodes <= CLAIMED_NODES and seconds > LARGEST_FRAME:
-                print(f"CLAIM BROKEN: {name} takes more than {1e3 * LARGEST_FRAME:.1f} ms a frame")
+            if seconds > LARGEST_FRAME[body_name]:
+                most = 1e3 * LARGEST_FRAME[body_name]
+                print(f"CLAIM BROKEN: {name} takes more than {most:.0f} ms a frame")
                 is_kept = False
     print("the claim holds" if is_kept else "the claim does NOT hold, see above")
     return 0 if is_kept else 1

@@ -139,7 +139,9 @@ class Relaxation:
 
         A continuous function of the forces. Without steps it is the warped linear displacement.
         """
-        return self.relaxed_from(self.linear(forces), forces, steps)
+        # Single precision is enough to begin steps from, and a third of the time.
+        linear = None if steps else self.linear(forces)
+        return self.native.relaxed(linear, forces, steps)
 
     def relaxed_from(
         self, linear: Array, forces: Array, steps: int, turning: Array | None = None

@@ -106,13 +106,15 @@ impl Relaxation {
     fn relaxed<'py>(
         &self,
         py: Python<'py>,
-        linear: Rows<'_>,
+        linear: Option<Rows<'_>>,
         forces: Rows<'_>,
         steps: usize,
         turning: Option<Rows<'_>>,
     ) -> PyResult<Matrix<'py>> {
         let nodes = self.nodes(py);
-        let linear = given::rows("linear", &linear, nodes)?;
+        let linear = linear
+            .map(|u| given::rows("linear", &u, nodes))
+            .transpose()?;
         let dead = given::rows("forces", &forces, nodes)?;
         let turning = turning
             .map(|t| given::rows("turning", &t, nodes))
@@ -125,6 +127,7 @@ impl Relaxation {
                 against: None,
             };
             let mut relaxing = locked(&self.inner);
+            let linear = linear.unwrap_or_else(|| relaxing.solid().linear(&dead));
             relaxing.relax(&linear, &load, steps);
             relaxing.warped.clone()
         });

@@ -1,7 +1,9 @@
 //! Cholesky factors by fronts, as `core/compliance/elimination/cholesky.py` makes them, for solves.
 
+use std::ops::{Add, Mul, Sub};
+
 use super::domains::Nodal;
-use super::four::{Four, ZERO};
+use super::four::Four;
 use crate::algebra::wide::widely;
 
 /// A front: its rows of R, with R'R the factored matrix.
@@ -165,100 +167,105 @@ impl Factor<f64> {
     }
 }
 
-/// Numbers added side by side in a dot product.
-const LANES: usize = 16;
+/// Pivots whose rows are taken together: what lies beyond them is read and written once for all.
+const TOGETHER: usize = 4;
+
+/// What rows of numbers `T` are multiplied with.
+trait Unknown<T>:
+    Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<T, Output = Self>
+{
+}
+impl Unknown<f32> for f32 {}
+impl Unknown<f64> for Four {}
 
 widely! {
     /// A front's part of R'^-1, by its rows.
     fn down(rows: &[f32], local: &mut [f32], size: usize) {
-        let mut rows = rows;
-        for pivot in 0..size {
-            let (own, beyond) = local[pivot..].split_at_mut(1);
-            let (row, rest) = rows.split_at(1 + beyond.len());
-            own[0] *= row[0];
-            for (value, entry) in beyond.iter_mut().zip(&row[1..]) {
-                *value -= own[0] * entry;
-            }
-            rows = rest;
-        }
+        eliminate(rows, local, size);
+    }
+}
+
+widely! {
+    /// The same for three axes at once.
+    fn axes_down(rows: &[f64], local: &mut [Four], size: usize) {
+        eliminate(rows, local, size);
     }
 }
 
 widely! {
     /// A front's part of R^-1, by its rows.
     fn up(rows: &[f32], local: &mut [f32], size: usize) {
-        let mut rows = rows;
-        for pivot in (0..size).rev() {
-            let (own, beyond) = local[pivot..].split_at_mut(1);
-            let (before, row) = rows.split_at(rows.len() - 1 - beyond.len());
-            let mut sums = [0.0_f32; LANES];
-            let whole = beyond.len() / LANES * LANES;
-            for (values, entries) in (beyond[..whole].chunks_exact(LANES))
-                .zip(row[1..=whole].chunks_exact(LANES))
-            {
-                for lane in 0..LANES {
-                    sums[lane] += values[lane] * entries[lane];
-                }
-            }
-            for (value, (entry, sum)) in (beyond[whole..].iter())
-                .zip(row[1 + whole..].iter().zip(&mut sums))
-            {
-                *sum += value * entry;
-            }
-            // By halves: a long chain of sums would wait for each.
-            let mut half = LANES / 2;
-            while half > 0 {
-                for lane in 0..half {
-                    sums[lane] += sums[lane + half];
-                }
-                half /= 2;
-            }
-            own[0] = (own[0] - sums[0]) * row[0];
-            rows = before;
-        }
+        substitute::<f32, f32, 16>(rows, local, size);
     }
 }
 
 widely! {
-    /// As [`down`], for three axes at once.
-    fn axes_down(rows: &[f64], local: &mut [Four], size: usize) {
-        let mut rows = rows;
-        for pivot in 0..size {
-            let (own, beyond) = local[pivot..].split_at_mut(1);
-            let (row, rest) = rows.split_at(1 + beyond.len());
-            own[0] = own[0] * Four::all(row[0]);
-            for (value, &entry) in beyond.iter_mut().zip(&row[1..]) {
-                *value -= own[0] * Four::all(entry);
-            }
-            rows = rest;
-        }
-    }
-}
-
-widely! {
-    /// As [`up`], for three axes at once.
+    /// The same for three axes at once.
     fn axes_up(rows: &[f64], local: &mut [Four], size: usize) {
-        let mut rows = rows;
-        for pivot in (0..size).rev() {
-            let (own, beyond) = local[pivot..].split_at_mut(1);
-            let (before, row) = rows.split_at(rows.len() - 1 - beyond.len());
-            // Four sums: one would wait for itself.
-            let mut sums = [ZERO; 4];
-            let whole = beyond.len() / 4 * 4;
-            for (values, entries) in (beyond[..whole].chunks_exact(4))
-                .zip(row[1..=whole].chunks_exact(4))
-            {
-                sums[0] += values[0] * Four::all(entries[0]);
-                sums[1] += values[1] * Four::all(entries[1]);
-                sums[2] += values[2] * Four::all(entries[2]);
-                sums[3] += values[3] * Four::all(entries[3]);
-            }
-            for (value, &entry) in beyond[whole..].iter().zip(&row[1 + whole..]) {
-                sums[0] += *value * Four::all(entry);
-            }
-            let sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-            own[0] = (own[0] - sum) * Four::all(row[0]);
-            rows = before;
+        substitute::<f64, Four, 4>(rows, local, size);
+    }
+}
+
+#[inline(always)]
+fn eliminate<T: Copy, V: Unknown<T>>(rows: &[T], local: &mut [V], size: usize) {
+    let (mut rows, mut pivot) = (rows, 0);
+    while pivot + TOGETHER <= size {
+        let (own, beyond) = local[pivot..].split_at_mut(TOGETHER);
+        let (a, rest) = rows.split_at(TOGETHER + beyond.len());
+        let (b, rest) = rest.split_at(a.len() - 1);
+        let (c, rest) = rest.split_at(a.len() - 2);
+        let (d, rest) = rest.split_at(a.len() - 3);
+        let w = own[0] * a[0];
+        let x = (own[1] - w * a[1]) * b[0];
+        let y = (own[2] - w * a[2] - x * b[1]) * c[0];
+        let z = (own[3] - w * a[3] - x * b[2] - y * c[1]) * d[0];
+        own.copy_from_slice(&[w, x, y, z]);
+        let (a, b, c, d) = (&a[4..], &b[3..], &c[2..], &d[1..]);
+        for ((((value, &a), &b), &c), &d) in beyond.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+            *value = *value - ((w * a + x * b) + (y * c + z * d));
         }
+        (rows, pivot) = (rest, pivot + TOGETHER);
+    }
+    for pivot in pivot..size {
+        let (own, beyond) = local[pivot..].split_at_mut(1);
+        let (row, rest) = rows.split_at(1 + beyond.len());
+        own[0] = own[0] * row[0];
+        for (value, &entry) in beyond.iter_mut().zip(&row[1..]) {
+            *value = *value - own[0] * entry;
+        }
+        rows = rest;
+    }
+}
+
+/// With so many sums side by side: a long chain would wait for each.
+#[inline(always)]
+fn substitute<T: Copy, V: Unknown<T>, const SUMS: usize>(rows: &[T], local: &mut [V], size: usize) {
+    let mut rows = rows;
+    for pivot in (0..size).rev() {
+        let (own, beyond) = local[pivot..].split_at_mut(1);
+        let (before, row) = rows.split_at(rows.len() - 1 - beyond.len());
+        let mut sums = [V::default(); SUMS];
+        let whole = beyond.len() / SUMS * SUMS;
+        for (values, entries) in
+            (beyond[..whole].chunks_exact(SUMS)).zip(row[1..=whole].chunks_exact(SUMS))
+        {
+            for lane in 0..SUMS {
+                sums[lane] = sums[lane] + values[lane] * entries[lane];
+            }
+        }
+        for (value, (&entry, sum)) in
+            (beyond[whole..].iter()).zip(row[1 + whole..].iter().zip(&mut sums))
+        {
+            *sum = *sum + *value * entry;
+        }
+        let mut half = SUMS / 2;
+        while half > 0 {
+            for lane in 0..half {
+                sums[lane] = sums[lane] + sums[lane + half];
+            }
+            half /= 2;
+        }
+        own[0] = (own[0] - sums[0]) * row[0];
+        rows = before;
     }
 }

@@ -35,6 +35,14 @@ four_by_four!(Sub, sub, -);
 four_by_four!(Mul, mul, *);
 four_by_four!(Div, div, /);
 
+impl Mul<f64> for Four {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, by: f64) -> Self {
+        self * Self::all(by)
+    }
+}
+
 impl AddAssign for Four {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {

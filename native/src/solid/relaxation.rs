@@ -12,17 +12,19 @@
 //! stretch, these turn what they move.
 
 mod beside;
+mod lead;
 
 use std::sync::Arc;
 
-use super::domains::Nodal;
+use super::domains::{Domains, Nodal};
 use super::factor;
 use super::factor::Factor;
+use super::four::Matrix;
 use super::history::{Field, History, add, dot, scale};
-use super::load::{Led, Load};
+use super::load::Load;
 use super::search::{bound, is_enough, shorter, step_length};
-use super::strained::Strained;
-use super::warp::{Room, Turned, Warp};
+use super::strained::{Springs, Strained};
+use super::warp::{Room, Warp};
 
 /// Tries of one step before its direction is given up.
 const MOST_TRIES: usize = 20;
@@ -42,6 +44,21 @@ impl Solid {
     /// How many nodes are free.
     pub fn nodes(&self) -> usize {
         self.stiffness.len() / 3
+    }
+
+    /// What it is warped by.
+    fn warped_by(&self) -> (&Domains, Option<&Springs>) {
+        (
+            &self.strained.terms[0].domains,
+            self.strained.springs.as_ref(),
+        )
+    }
+
+    /// The linear displacement under forces, in single precision: a place to begin steps from.
+    pub fn linear(&self, forces: &Nodal) -> Field {
+        let mut found = vec![[0.0; 3]; forces.len()];
+        (self.stiffness).solve_freedoms(forces, &mut self.stiffness.room(), &mut found);
+        found
     }
 }
 
@@ -65,7 +82,7 @@ pub struct Relaxation {
     slope: Field,
     potential: f64,
     forces: Field,
-    turned: Vec<Turned>,
+    gradients: Vec<Matrix>,
     history: History,
     direction: Field,
     before: Field,
@@ -88,7 +105,7 @@ impl Relaxation {
             slope: field.clone(),
             potential: 0.0,
             forces: field.clone(),
-            turned: vec![Turned::default(); fours],
+            gradients: vec![Matrix::default(); fours],
             history: History::new(nodes),
             direction: field.clone(),
             before: field.clone(),
@@ -108,17 +125,21 @@ impl Relaxation {
 
     /// Warps [`Self::linear`].
     pub fn warp(&mut self) {
-        let strained = &self.solid.strained;
-        let on = (&strained.terms[0].domains, strained.springs.as_ref());
-        let (turned, room) = (&mut self.turned, &mut self.room);
-        (self.solid.warp).warp(on, &self.linear, turned, room, &mut self.warped);
+        let (gradients, room) = (&mut self.gradients, &mut self.room);
+        let warp = &self.solid.warp;
+        warp.warp(
+            self.solid.warped_by(),
+            &self.linear,
+            gradients,
+            room,
+            &mut self.warped,
+        );
     }
 
     /// What forces do on linear displacements, where they were last warped.
     pub fn pull_back(&mut self, forces: &Nodal, pulled: &mut Nodal) {
-        let strained = &self.solid.strained;
-        let on = (&strained.terms[0].domains, strained.springs.as_ref());
-        (self.solid.warp).pull_back(on, &self.turned, forces, &mut self.room, pulled);
+        let by = self.solid.warped_by();
+        (self.solid.warp).pull_back(by, &self.gradients, forces, &mut self.room, pulled);
     }
 
     /// The shape after so many steps from the linear displacement of a load: a continuous function of
@@ -152,42 +173,6 @@ impl Relaxation {
             }
             self.learn(share * most, load);
         }
-    }
-
-    /// Steps until what is led is where it is wanted, missed by no more than a share `close` of the way, by
-    /// energy, and at rest; what it ends with is the larger share. Where `goes_on`, from a linear displacement
-    /// that is not the load's own, with what was learnt before.
-    pub fn lead(
-        &mut self,
-        (linear, goes_on): (&Nodal, bool),
-        led: &mut Led,
-        close: f64,
-        most: usize,
-    ) -> Rest {
-        let none = std::mem::take(&mut self.none);
-        self.linear.copy_from_slice(linear);
-        let work = Load::leading(&none, led).linear_work(linear);
-        if goes_on {
-            self.arrive(&Load::leading(&none, led));
-            self.find_slope(&Load::leading(&none, led));
-        } else {
-            self.leave_rest(linear, &Load::leading(&none, led), work);
-        }
-        let mut steps = 0;
-        let rest = loop {
-            let rest = self.descend(&Load::leading(&none, led), work, close, most - steps);
-            steps += rest.steps;
-            let missed = led.is_missed_by(&self.warped);
-            let left = rest.left.max(missed);
-            if missed <= close || rest.left > close || steps == most {
-                break Rest { left, steps };
-            }
-            led.count_in(&self.warped);
-            self.arrive(&Load::leading(&none, led));
-            self.find_slope(&Load::leading(&none, led));
-        };
-        self.none = none;
-        rest
     }
 
     /// Steps from where it is.

@@ -30,13 +30,6 @@ pub struct Warp {
     poisson: Factor<f64>,
 }
 
-/// The gradient of a linear displacement in four domains, and the rotations it means.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Turned {
-    gradient: Matrix,
-    turns: Turns,
-}
-
 /// Room for the map's solves.
 #[derive(Debug, Clone)]
 pub struct Room {
@@ -60,17 +53,17 @@ impl Warp {
         }
     }
 
-    /// Warps a linear displacement of the nodes; `turned` keeps what it does to the domains.
+    /// Warps a linear displacement of the nodes; `gradients` keeps its own in the domains.
     pub fn warp(
         &self,
         (domains, springs): (&Domains, Option<&Springs>),
         linear: &Nodal,
-        turned: &mut [Turned],
+        gradients: &mut [Matrix],
         room: &mut Room,
         warped: &mut Nodal,
     ) {
         room.right.fill([0.0; 3]);
-        ask(domains, &self.weights, linear, turned, &mut room.right);
+        ask(domains, &self.weights, linear, gradients, &mut room.right);
         if let Some(springs) = springs {
             springs.add_forces(linear, &mut room.right);
         }
@@ -83,7 +76,7 @@ impl Warp {
     pub fn pull_back(
         &self,
         (domains, springs): (&Domains, Option<&Springs>),
-        turned: &[Turned],
+        gradients: &[Matrix],
         forces: &Nodal,
         room: &mut Room,
         pulled: &mut Nodal,
@@ -91,7 +84,7 @@ impl Warp {
         self.poisson
             .solve_axes(forces, &mut room.poisson, &mut room.right);
         pulled.fill([0.0; 3]);
-        answer(domains, &self.weights, turned, &room.right, pulled);
+        answer(domains, &self.weights, gradients, &room.right, pulled);
         if let Some(springs) = springs {
             springs.add_forces(&room.right, pulled);
         }
@@ -106,21 +99,26 @@ fn bounded(e: &Matrix) -> (Matrix, Matrix) {
     (inverse, squared)
 }
 
+/// The rotations that a linear displacement's gradients mean.
+#[inline(always)]
+fn turns_of(gradient: &Matrix) -> Turns {
+    let (twice, half) = (axial(gradient), Four::all(0.5));
+    Turns::of([twice[0] * half, twice[1] * half, twice[2] * half])
+}
+
 widely! {
     /// Adds the nodal forces of F - I, for each domain what it asks for.
     fn ask(
         domains: &Domains,
         weights: &[Four],
         linear: &Nodal,
-        turned: &mut [Turned],
+        gradients: &mut [Matrix],
         right: &mut Nodal,
     ) {
         for four in 0..domains.fours() {
             let gradient = domains.gradient(four, linear);
-            let twice = axial(&gradient);
-            let half = Four::all(0.5);
-            let turns = Turns::of([twice[0] * half, twice[1] * half, twice[2] * half]);
-            turned[four] = Turned { gradient, turns };
+            gradients[four] = gradient;
+            let turns = turns_of(&gradient);
             let strain = symmetric_part(&gradient);
             let (inverse, squared) = bounded(&strain);
             // I - (I + q)^-1 = q (I + q)^-1: what is small is never added to the identity.
@@ -137,12 +135,13 @@ widely! {
     fn answer(
         domains: &Domains,
         weights: &[Four],
-        turned: &[Turned],
+        gradients: &[Matrix],
         solved: &Nodal,
         pulled: &mut Nodal,
     ) {
         for four in 0..domains.fours() {
-            let Turned { gradient, turns } = &turned[four];
+            let gradient = &gradients[four];
+            let turns = turns_of(gradient);
             let e = symmetric_part(gradient);
             let (inverse, _) = bounded(&e);
             let stress = scaled(&domains.gradient(four, solved), weights[four]);
