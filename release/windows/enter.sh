@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # A command in a root of make_root.sh: `enter.sh ROOT COMMAND...`. The folder that one stands in is there
 # under its own path, drive Z: in wine: `enter.sh ROOT wine /windows/Python313/python.exe -c ...`.
+# A program under wine has the root for itself: what it leaves is ended with it, such as a console of a
+# child that was killed, which would hold open whatever reads what was printed.
 # What is mounted for it is taken away by leave.sh; never delete a root before.
 set -euo pipefail
 root=$(realpath "$1")
@@ -20,4 +22,4 @@ exec chroot "$root" env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:
     XDG_RUNTIME_DIR=/tmp WINEPREFIX=/windows/prefix WINEARCH=win64 WINEDEBUG=-all \
     "WINEDLLOVERRIDES=mscoree=;mshtml=;vcomp140=n;$microsofts=n,b" \
     OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 ${PALPATE_PACKAGE:+PALPATE_PACKAGE="$PALPATE_PACKAGE"} \
-    bash -c 'cd "$1"; shift; exec "$@"' enter "$PWD" "$@"
+    bash -c 'cd "$1"; shift; status=0; "$@" || status=$?; [ "$1" != wine ] || wineserver --kill 2>/dev/null || true; exit $status' enter "$PWD" "$@"

@@ -238,7 +238,8 @@ def test_a_bare_timer_counts_what_it_did():
     timer = BareTimer(1000)
     time.sleep(0.2)
     counters = timer.stop()
-    assert counters["ticks"] + counters["missed"] >= 195
+    # Its thread may begin late, on a busy machine by tens of milliseconds.
+    assert counters["ticks"] + counters["missed"] >= 150
     with pytest.raises(ValueError, match="from 100 to 8000"):
         BareTimer(50)
 
