@@ -33,7 +33,7 @@ pub(crate) fn dot_within<const FUSED: bool>(a: &[f64], b: &[f64]) -> f64 {
 
 /// The sum of the lanes, and of products of what was too short for them.
 #[inline(always)]
-fn total<const FUSED: bool>(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn total<const FUSED: bool>(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
     let mut tail = 0.0;
     for k in 0..a.len().min(b.len()) {
         tail = plus_product::<FUSED>(tail, a[k], b[k]);
@@ -42,26 +42,6 @@ fn total<const FUSED: bool>(lanes: &[f64; LANES], a: &[f64], b: &[f64]) -> f64 {
     ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))
         + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
         + tail
-}
-
-/// The sum of products of three pairs together, in a fixed order of additions.
-#[inline(always)]
-pub(crate) fn dot_three<const FUSED: bool>(a: [&[f64]; 3], b: [&[f64]; 3]) -> f64 {
-    let n = a[0].len();
-    let [a, b] = [a, b].map(|rows| rows.map(|row| &row[..n]));
-    let mut lanes = [0.0; LANES];
-    let mut k = 0;
-    while k + LANES <= n {
-        for r in 0..3 {
-            let (x, y) = (&a[r][k..k + LANES], &b[r][k..k + LANES]);
-            for l in 0..LANES {
-                lanes[l] = plus_product::<FUSED>(lanes[l], x[l], y[l]);
-            }
-        }
-        k += LANES;
-    }
-    let rest = |r: usize| total::<FUSED>(&[0.0; LANES], &a[r][k..], &b[r][k..]);
-    total::<FUSED>(&lanes, &[], &[]) + rest(0) + rest(1) + rest(2)
 }
 
 /// The sums of products of three rows with one, each as [`dot_within`] has it, to the bit: what is loaded of

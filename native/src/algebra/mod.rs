@@ -3,6 +3,7 @@
 use glam::DMat3;
 
 pub mod cholesky;
+pub(crate) mod hashing;
 mod panels;
 pub mod small_matrix;
 pub(crate) mod wide;

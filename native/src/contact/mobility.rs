@@ -58,6 +58,12 @@ impl Mobility {
         DMat3::from_diagonal(DVec3::splat(self.shift)) - seen * self.turn * loaded
     }
 
+    /// How unit forces along the axes turn it, at a place so far from its centre, rad/N at unit modulus.
+    #[inline]
+    pub(crate) fn turns(&self, arm: DVec3) -> DMat3 {
+        self.turn * crossing(arm)
+    }
+
     /// Where weight and forces at places take the body.
     pub fn motion(&self, forces: impl Iterator<Item = (DVec3, DVec3)>) -> Motion {
         let (mut sum, mut torque) = (DVec3::ZERO, DVec3::ZERO);

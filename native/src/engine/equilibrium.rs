@@ -246,8 +246,7 @@ impl Joint {
             }
             // How the body moves as a whole depends on the tick's length: what two tools share does not.
             let carried = self.mobilities[usize::from(slot.body)].map_or(0.0, |mobility| {
-                let place = slot.at.position;
-                (slot.normal).dot(mobility.between(place, place) * slot.normal)
+                (slot.normal).dot(mobility.between(slot.arm, slot.arm) * slot.normal)
             });
             let elastic = self.problem.own(unknown) - carried;
             let spring = share * elastic + fading * carried;

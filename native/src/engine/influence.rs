@@ -51,7 +51,7 @@ impl Joint {
     }
 
     fn influence_on(&mut self, place: usize, grounds: &[Ground<'_>], press: &Press) -> DMat3 {
-        let Slot { at, body, .. } = self.patch.slots()[place];
+        let Slot { at, arm, body, .. } = self.patch.slots()[place];
         let Some(ground) = grounds
             .get(usize::from(body))
             .filter(|_| body == press.body)
@@ -60,7 +60,7 @@ impl Joint {
         };
         let nodes = ground.body.triangles[press.hold.triangle as usize];
         let from = ground.place(press.hold.triangle, press.hold.alpha);
-        let carried = ground.carried(at.position, from);
+        let carried = ground.carried(arm, from);
         let (recent, blocks) = (&mut self.influence.recent, self.patch.blocks_mut());
         let mut of_node = |seen: u32| {
             let mut sum = DMat3::ZERO;

@@ -80,6 +80,8 @@ pub struct Joint {
     pub(super) effort: Effort,
     /// How often a tick may take up its bounded work.
     pub(super) turns: usize,
+    /// So far.
+    pub(super) ticks: u32,
     pub(super) room: Room,
     /// Whose slots there are.
     eras: [Option<u64>; MOST_TOOLS],
@@ -102,6 +104,7 @@ impl Default for Joint {
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
             turns: 1,
+            ticks: 0,
             room: Room::IN_TICK,
             eras: [None; MOST_TOOLS],
             bodies: [None; MOST_BODIES],

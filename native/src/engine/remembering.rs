@@ -112,7 +112,7 @@ impl Joint {
             let body = usize::from(slot.body);
             let step = memories[body].step();
             if !step.is_none() {
-                let moved = slot.moved - motions[body].at(slot.at.position);
+                let moved = slot.moved - motions[body].at(slot.arm);
                 let moved = (moved - slot.remembered) * step.at_once();
                 slot.trace.advance(step, moved);
             }

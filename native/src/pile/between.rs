@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::contact::MOST_SHARES;
 use crate::algebra::wide::{plus_product, widely};
 
 /// Places at first.
@@ -75,52 +76,73 @@ impl Between {
         (self.room, self.blocks) = (room, blocks);
     }
 
-    /// How the first `count` slots move by a unit force along each of some ways, three at most, shared out
-    /// among some; `sum` is memory.
+    /// How the first `count` slots move by a unit force along each of some ways, one or three, shared out
+    /// among some.
     pub(super) fn move_by(
         &self,
         shares: &[(usize, f64)],
         ways: &[DVec3],
         count: usize,
-        sum: &mut Vec<Three>,
         moved: &mut Vec<Three>,
     ) {
-        let of = |slot: usize| &self.blocks[slot * self.room..][..count];
         moved.resize(count, [0.0; 12]);
-        if let [(slot, 1.0)] = shares {
-            turn(of(*slot), ways, moved);
-            return;
+        let mut blocks = [&self.blocks[..0]; MOST_SHARES];
+        let mut parts = [0.0; MOST_SHARES];
+        for (number, &(slot, share)) in shares.iter().enumerate() {
+            blocks[number] = &self.blocks[slot * self.room..][..count];
+            parts[number] = share;
         }
-        sum.clear();
-        sum.resize(count, [0.0; 12]);
-        for &(slot, share) in shares {
-            add(of(slot), share, sum);
-        }
-        turn(sum, ways, moved);
-    }
-}
-
-widely! {
-    /// Adds a share of blocks to others.
-    fn add(blocks: &[Three], share: f64, sum: &mut [Three]) {
-        for (sum, block) in sum.iter_mut().zip(blocks) {
-            for k in 0..12 {
-                sum[k] = plus_product::<FUSED>(sum[k], share, block[k]);
-            }
+        let (blocks, parts) = (&blocks[..shares.len()], &parts[..shares.len()]);
+        match *ways {
+            [way] => turn_one(blocks, parts, way, moved),
+            [first, second, third] => turn_three(blocks, parts, [first, second, third], moved),
+            _ => debug_assert!(false, "{}", ways.len()),
         }
     }
 }
 
+/// The sum of the blocks of a slot, each by its share.
+#[inline(always)]
+fn sum_of<const FUSED: bool>(blocks: &[&[Three]], shares: &[f64], slot: usize) -> Three {
+    let mut sum = [0.0; 12];
+    for (blocks, &share) in blocks.iter().zip(shares) {
+        let block = &blocks[slot];
+        for k in 0..12 {
+            sum[k] = plus_product::<FUSED>(sum[k], share, block[k]);
+        }
+    }
+    sum
+}
+
+/// What a block makes of a way.
+#[inline(always)]
+fn turned<const FUSED: bool>(block: &Three, way: DVec3) -> [f64; 4] {
+    let mut moved = [0.0; 4];
+    for r in 0..4 {
+        let by_two = plus_product::<FUSED>(way.x * block[r], way.y, block[4 + r]);
+        moved[r] = plus_product::<FUSED>(by_two, way.z, block[8 + r]);
+    }
+    moved
+}
+
 widely! {
-    /// What each block makes of each way.
-    fn turn(blocks: &[Three], ways: &[DVec3], moved: &mut [Three]) {
-        for (moved, block) in moved.iter_mut().zip(blocks) {
-            for (way, moved) in ways.iter().zip(moved.chunks_exact_mut(4)) {
-                for r in 0..4 {
-                    let by_two = plus_product::<FUSED>(way.x * block[r], way.y, block[4 + r]);
-                    moved[r] = plus_product::<FUSED>(by_two, way.z, block[8 + r]);
-                }
-            }
+    /// What the blocks of each slot, added up by their shares, make of a way.
+    fn turn_one(blocks: &[&[Three]], shares: &[f64], way: DVec3, moved: &mut [Three]) {
+        for (slot, moved) in moved.iter_mut().enumerate() {
+            let sum = sum_of::<FUSED>(blocks, shares, slot);
+            moved[..4].copy_from_slice(&turned::<FUSED>(&sum, way));
+        }
+    }
+}
+
+widely! {
+    /// The same of three ways.
+    fn turn_three(blocks: &[&[Three]], shares: &[f64], ways: [DVec3; 3], moved: &mut [Three]) {
+        for (slot, moved) in moved.iter_mut().enumerate() {
+            let sum = sum_of::<FUSED>(blocks, shares, slot);
+            moved[..4].copy_from_slice(&turned::<FUSED>(&sum, ways[0]));
+            moved[4..8].copy_from_slice(&turned::<FUSED>(&sum, ways[1]));
+            moved[8..].copy_from_slice(&turned::<FUSED>(&sum, ways[2]));
         }
     }
 }
@@ -159,10 +181,10 @@ mod tests {
         for new in 0..7 {
             between.enter(new, |slot| block(slot, new));
         }
-        let ways = [DVec3::new(0.3, -1.0, 0.5), DVec3::Y];
+        let ways = [DVec3::new(0.3, -1.0, 0.5), DVec3::Y, DVec3::NEG_X];
         let shares = [(2, 0.75), (5, -0.5), (0, 0.75)];
-        let (mut sum, mut moved) = (Vec::new(), Vec::new());
-        between.move_by(&shares, &ways, 7, &mut sum, &mut moved);
+        let mut moved = Vec::new();
+        between.move_by(&shares, &ways, 7, &mut moved);
         for (number, &way) in ways.iter().enumerate() {
             for (slot, moved) in moved.iter().enumerate() {
                 let parts = shares.map(|(loaded, share)| block(slot, loaded) * way * share);

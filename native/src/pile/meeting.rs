@@ -9,6 +9,7 @@ use super::member::Member;
 use super::obstacle::{Around, Rigid};
 use super::outline::met;
 use super::shares::shares;
+use crate::algebra::hashing::Quick;
 
 /// Points within so many distances between them are looked at.
 const MARGIN: f64 = 0.5;
@@ -42,16 +43,16 @@ pub(super) const MOST_CONTACTS: usize = 2 * MOST_FOUND;
 #[derive(Debug, Clone)]
 pub(super) struct Meeting {
     found: Vec<Near>,
-    staying: HashSet<Near>,
-    missing: HashSet<Near>,
+    staying: HashSet<Near, Quick>,
+    missing: HashSet<Near, Quick>,
 }
 
 impl Default for Meeting {
     fn default() -> Self {
         Self {
             found: Vec::with_capacity(MOST_FOUND),
-            staying: HashSet::with_capacity(MOST_CONTACTS),
-            missing: HashSet::with_capacity(MOST_FOUND),
+            staying: HashSet::with_capacity_and_hasher(MOST_CONTACTS, Quick::default()),
+            missing: HashSet::with_capacity_and_hasher(MOST_FOUND, Quick::default()),
         }
     }
 }

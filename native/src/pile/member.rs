@@ -244,6 +244,9 @@ impl Member {
     pub(super) fn begin(&mut self, gravity: DVec3, dt: f64) {
         let own = self.placement.direction_to_body(gravity);
         self.mobility = self.free.map(|free| free.mobility(own, 1.0, dt));
+        for slot in self.patch.slots_mut() {
+            slot.arm = slot.at.position + slot.moved;
+        }
     }
 
     /// It moves as a whole by its weight and what presses it.
@@ -251,8 +254,8 @@ impl Member {
         let Some(mobility) = &self.mobility else {
             return;
         };
-        let loads =
-            (self.loads()).map(|(point, force)| (self.touchable.point(point).position, force));
+        let loads = self.slots().iter();
+        let loads = loads.map(|slot| (slot.arm, slot.force * self.young_modulus));
         self.motion = mobility.motion(loads);
         if self.motion.is_finite() {
             self.placement = self.placement.moved(&self.motion);

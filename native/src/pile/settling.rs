@@ -66,7 +66,7 @@ impl Settles for Pile {
             for contact in self.contacts().iter().filter(presses) {
                 let own = turn * contact.force() * contact.sign_on(body);
                 for &(point, share) in contact.shares_on(body) {
-                    let at = member.touchable.point(point).position;
+                    let at = member.slots()[member.slot(point)].arm;
                     force += own * share;
                     torque += (at - free.centre).cross(own * share);
                 }

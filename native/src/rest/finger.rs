@@ -105,7 +105,7 @@ impl Finger {
             )),
             Self::Tool(..) => None,
         };
-        let pressed = tool.iter().map(|slot| (slot.at.position, slot.force));
+        let pressed = tool.iter().map(|slot| (slot.arm, slot.force));
         pressed.chain(point)
     }
 

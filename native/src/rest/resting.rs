@@ -89,7 +89,7 @@ impl Resting {
             .flat_map(|finger| finger.pushes(&self.prop.body));
         let by_supports = self.prop.supports.iter();
         let by_supports = by_supports.flat_map(|support| support.collider.pressed());
-        let by_supports = by_supports.map(|slot| (slot.at.position, slot.force));
+        let by_supports = by_supports.map(|slot| (slot.arm, slot.force));
         for (place, push) in by_fingers.chain(by_supports) {
             let push = push * self.young_modulus;
             force += push;

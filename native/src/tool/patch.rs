@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use products::{Vectors, add_along, add_both, add_moved, at, gather, set};
+use products::{Vectors, add_along, add_both, add_moved, at, fill_up, gather, set};
 use slot_numbers::SlotNumbers;
 
 use super::blocks::{Blocks, Recent};
@@ -142,6 +142,7 @@ impl Patch {
             set(&mut self.forces, i, force(slot));
             set(&mut self.moved, i, from(slot));
         }
+        fill_up(&mut self.forces, self.slots.len());
     }
 
     /// Adds what a slot and those before it do to each other. Once for each slot that is loaded or
@@ -156,7 +157,8 @@ impl Patch {
     /// Adds how far the forces on the slots before one move it; how far it moves so far.
     #[inline]
     pub(crate) fn see(&mut self, slot: usize) -> DVec3 {
-        let by_others = DVec3::from_array(gather(self.blocks_of(slot), &self.forces, slot));
+        let blocks = &self.compliance[blocks_at(slot)];
+        let by_others = DVec3::from_array(gather(blocks, &mut self.forces, slot));
         let moved = self.summed(slot) + by_others;
         set(&mut self.moved, slot, moved);
         moved
@@ -228,7 +230,7 @@ impl Patch {
             }
             let near = surface.near().filter(|_| kin[usize::from(other.tool)]);
             let points = [(point, at), (other.point, &{ other.at })];
-            let carried = ground.carried(at.position, other.at.position);
+            let carried = ground.carried(at.position, other.arm);
             let block = self.response(ground, near, points);
             self.put(new, slot, block + carried);
         }
@@ -278,15 +280,6 @@ impl Patch {
                 .set([moved.tool, moved.body], moved.point, slot);
         }
         self.slots.swap_remove(slot);
-    }
-
-    /// Drops some.
-    pub(crate) fn let_go(&mut self, goes: impl Fn(&Slot) -> bool) {
-        for slot in (0..self.slots.len()).rev() {
-            if goes(&self.slots[slot]) {
-                self.leave(slot);
-            }
-        }
     }
 
     /// Moves every slot as its forces and the offset ask for.

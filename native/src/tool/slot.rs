@@ -33,6 +33,9 @@ pub struct Slot {
     pub slips: bool,
     /// Displacement, m.
     pub moved: DVec3,
+    /// Where forces on it act on the body as a whole: where it was at the beginning of the tick, or one a
+    /// little before, m.
+    pub arm: DVec3,
     /// The part of it that points cause, and what is remembered, m.
     pub offset: DVec3,
     /// The same before the points' forces were found anew, m.
@@ -76,6 +79,7 @@ impl Slot {
             anchor: None,
             slips: false,
             moved: DVec3::ZERO,
+            arm: at.position,
             offset: DVec3::ZERO,
             trace: Trace::default(),
             remembered: DVec3::ZERO,

@@ -59,11 +59,12 @@ def test_force_at_rest_is_that_of_a_body_without_a_clock(laid, kind):
 
 
 # With friction where a point sticks depends on how it came to be there: on rounding, too.
-@pytest.mark.parametrize(("friction", "apart"), [(0.0, 1e-4), (0.4, 0.03)])
+@pytest.mark.parametrize(("friction", "apart"), [(0.0, 1e-4), (0.4, 0.02)])
 def test_each_tick_with_a_tool_is_that_of_a_body_without_a_clock(laid, friction, apart):
     start = ON_TOP["tool"]
     path = press(start, rest=50)
-    path[60:200] += 0.002 * np.sin(np.linspace(0.0, 3.0, 140))[:, None] * [1.0, 0.5, 0.0]
+    # There and back: no jump aside, of whose friction a tick leaves most to the next.
+    path[60:200] += 0.002 * np.sin(np.linspace(0.0, np.pi, 140))[:, None] * [1.0, 0.5, 0.0]
     floors = laid.corner(friction)
     resting = Resting(laid.body, floors, [(TIP, Pose.at(start))], settings=laid.settings(friction))
     felt = []

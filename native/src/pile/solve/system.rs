@@ -1,34 +1,16 @@
 //! How all contacts give way to forces at each other, by all bodies that they share.
 //!
 //! Unknowns are the pushes of all contacts, then two forces aside of each that rubs; one without
-//! friction has no more. What moves a body as a whole is of rank six: it is added as six products.
-
-use std::ops::Range;
+//! friction has no more.
 
 use glam::{DMat3, DVec3};
 
-use super::products::{add_six, seen_by};
+use super::products::{Side, seen_by};
 use crate::algebra::room;
 use crate::contact::mobility::Mobility;
 use crate::pile::between::Three;
 use crate::pile::contact::{Contact, MOST_SHARES};
 use crate::pile::member::Member;
-
-/// A contact as one body has it.
-#[derive(Debug, Clone)]
-struct Side {
-    contact: usize,
-    /// Which of the slots of the body that carry forces carry its own.
-    slots: Range<usize>,
-    /// Takes the contact's directions, out and two across, to those of the body, as its force acts there.
-    ways: DMat3,
-    /// The same turned over, a part of each direction after the other.
-    along: Three,
-    /// Where the force acts on the body as a whole, m.
-    place: DVec3,
-    /// The last of the slots.
-    last: usize,
-}
 
 /// Displacements along the unknowns under forces along these: `at_rest + matrix force`. Keeps its memory.
 #[derive(Debug, Clone, Default)]
@@ -48,10 +30,8 @@ pub(super) struct System {
     sides: Vec<Side>,
     /// Slots of a body that carry forces, and their shares.
     shares: Vec<(usize, f64)>,
-    sum: Vec<Three>,
     moved: Vec<Three>,
-    /// Unit forces along all unknowns as wrenches on a body, an entry of these after the other.
-    wrenches: Vec<f64>,
+    parts: Vec<Three>,
 }
 
 impl System {
@@ -95,7 +75,6 @@ impl System {
         for (body, member) in members.iter().enumerate() {
             self.find_sides(contacts, chosen, body, member);
             self.give_way(member);
-            self.add_motion(member.mobility.as_ref());
             self.add_rest(member);
         }
         mirror(&mut self.matrix, pushes, count);
@@ -116,7 +95,6 @@ impl System {
     pub(super) fn reserve(&mut self, contacts: usize) {
         let unknowns = 3 * contacts;
         self.matrix = room(unknowns * unknowns);
-        self.wrenches = room(6 * unknowns);
         self.at_rest.reserve(unknowns);
         self.directions.reserve(contacts);
         self.rubs.reserve(contacts);
@@ -124,14 +102,15 @@ impl System {
         self.springs.reserve(contacts);
         self.sides.reserve(contacts);
         self.shares.reserve(MOST_SHARES * contacts);
-        self.sum.reserve(contacts);
         self.moved.reserve(contacts);
+        self.parts.reserve(contacts);
     }
 
     fn find_sides(&mut self, contacts: &[Contact], chosen: &[usize], body: usize, member: &Member) {
         self.sides.clear();
         self.shares.clear();
         let turn = DMat3::from_quat(member.placement.rotation.inverse());
+        let centre = (member.mobility).map_or(DVec3::ZERO, |mobility| mobility.centre);
         for (contact, &number) in chosen.iter().enumerate() {
             let sign = contacts[number].sign_on(body);
             if sign == 0.0 {
@@ -139,7 +118,7 @@ impl System {
             }
             let (first, mut place, mut last) = (self.shares.len(), DVec3::ZERO, 0);
             for &(point, share) in contacts[number].shares_on(body) {
-                place += member.touchable.point(point).position * share;
+                place += member.slots()[member.slot(point)].arm * share;
                 self.shares.push((member.slot(point), share));
                 last = last.max(member.slot(point));
             }
@@ -154,7 +133,7 @@ impl System {
                 slots: first..self.shares.len(),
                 ways,
                 along,
-                place,
+                arm: place - centre,
                 last,
             });
         }
@@ -173,62 +152,71 @@ impl System {
         }
     }
 
-    /// Adds how a body's surface gives way.
+    /// Adds how a body's surface gives way, and how it moves as a whole.
     fn give_way(&mut self, member: &Member) {
         let between = member.between();
-        let (mut sum, mut moved) = (
-            std::mem::take(&mut self.sum),
+        let (mut moved, mut parts) = (
             std::mem::take(&mut self.moved),
+            std::mem::take(&mut self.parts),
         );
-        let count = self.at_rest.len();
+        parts.resize(self.sides.len(), [0.0; 12]);
         for number in 0..self.sides.len() {
             let loaded = &self.sides[number];
             let (own, owns) = self.unknowns(loaded);
             let ways = own.map(|(_, way)| way / member.young_modulus);
             let shares = &self.shares[loaded.slots.clone()];
-            between.move_by(shares, &ways[..owns], loaded.last + 1, &mut sum, &mut moved);
-            for (other, seen) in self.sides[..=number].iter().enumerate() {
-                let by = seen_by(&self.shares[seen.slots.clone()], &moved, &seen.along);
-                let (theirs, others) = self.unknowns(seen);
-                for (way, &(row, _)) in own[..owns].iter().enumerate() {
-                    // Of the pairs of a contact with itself each once.
-                    let last = if other == number { way + 1 } else { others };
-                    for (l, &(column, _)) in theirs[..last].iter().enumerate() {
-                        let (row, column) = (row.max(column), row.min(column));
-                        self.matrix[row * count + column] += by[4 * way + l];
-                    }
-                }
-            }
+            between.move_by(shares, &ways[..owns], loaded.last + 1, &mut moved);
+            let carried = (member.mobility).map_or([[0.0; 12]; 4], |mobility| {
+                carried(&mobility, loaded.arm, &loaded.ways)
+            });
+            let seen = &self.sides[..=number];
+            seen_by(seen, &self.shares, &moved, &carried, &mut parts);
+            self.add(number, &parts[..=number]);
         }
-        (self.sum, self.moved) = (sum, moved);
+        (self.moved, self.parts) = (moved, parts);
     }
 
-    /// Adds how a body moves as a whole.
-    fn add_motion(&mut self, mobility: Option<&Mobility>) {
-        let Some(mobility) = mobility else { return };
+    /// Adds what a side does to those up to it, and by symmetry they to it.
+    fn add(&mut self, number: usize, parts: &[Three]) {
         let count = self.at_rest.len();
-        self.wrenches.clear();
-        self.wrenches.resize(6 * count, 0.0);
-        for number in 0..self.sides.len() {
-            let side = &self.sides[number];
-            let (own, owns) = self.unknowns(side);
-            let arm = side.place - mobility.centre;
-            for &(unknown, way) in &own[..owns] {
-                let torque = arm.cross(way);
-                for axis in 0..3 {
-                    self.wrenches[axis * count + unknown] = way[axis];
-                    self.wrenches[(3 + axis) * count + unknown] = torque[axis];
-                }
+        let loaded = self.sides[number].contact;
+        let own = self.aside[loaded];
+        let (before, itself) = parts.split_at(number);
+        for (side, by) in self.sides.iter().zip(before) {
+            let seen = side.contact;
+            self.matrix[loaded.max(seen) * count + loaded.min(seen)] += by[0];
+            if let Some(aside) = own {
+                let rows = &mut self.matrix[aside * count..][..2 * count];
+                rows[seen] += by[4];
+                rows[count + seen] += by[8];
             }
+            let Some(other) = self.aside[seen] else {
+                continue;
+            };
+            let rows = &mut self.matrix[other * count..][..2 * count];
+            rows[loaded] += by[1];
+            rows[count + loaded] += by[2];
+            let Some(aside) = own else { continue };
+            let (row, column, [xy, yx]) = if aside > other {
+                (aside, other, [by[6], by[9]])
+            } else {
+                (other, aside, [by[9], by[6]])
+            };
+            let rows = &mut self.matrix[row * count + column..][..count + 2];
+            rows[0] += by[5];
+            rows[1] += xy;
+            rows[count] += yx;
+            rows[count + 1] += by[10];
         }
-        for side in &self.sides {
-            let (own, owns) = self.unknowns(side);
-            let arm = side.place - mobility.centre;
-            for &(unknown, way) in &own[..owns] {
-                let (shift, turn) = (way * mobility.shift, mobility.turn * arm.cross(way));
-                let moves = [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z];
-                let row = &mut self.matrix[unknown * count..][..=unknown];
-                add_six(&self.wrenches, count, &moves, row);
+        for by in itself {
+            self.matrix[loaded * count + loaded] += by[0];
+            if let Some(aside) = own {
+                let rows = &mut self.matrix[aside * count..][..2 * count];
+                rows[loaded] += by[4];
+                rows[count + loaded] += by[8];
+                rows[aside] += by[5];
+                rows[count + aside] += by[9];
+                rows[count + aside + 1] += by[10];
             }
         }
     }
@@ -253,6 +241,24 @@ impl System {
         let count = self.at_rest.len();
         &self.matrix[number * count..][..count]
     }
+}
+
+/// How far unit forces along three ways, which act on a body so far from its centre, move that, and a
+/// place besides per metre along each axis that it is from it.
+fn carried(mobility: &Mobility, arm: DVec3, ways: &DMat3) -> [Three; 4] {
+    let mut carried = [[0.0; 12]; 4];
+    for (k, way) in [ways.x_axis, ways.y_axis, ways.z_axis]
+        .into_iter()
+        .enumerate()
+    {
+        let turn = mobility.turn * arm.cross(way);
+        let far = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| turn.cross(axis));
+        let moves = [way * mobility.shift, far[0], far[1], far[2]];
+        for (carried, moves) in carried.iter_mut().zip(moves) {
+            carried[4 * k..][..3].copy_from_slice(&moves.to_array());
+        }
+    }
+    carried
 }
 
 /// Copies what is below the diagonal of the rows and columns from `first` on to above it.

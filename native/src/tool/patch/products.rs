@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::algebra::MOST_POINTS;
-use crate::algebra::cholesky::dot_three;
+use crate::algebra::cholesky::total;
 use crate::algebra::wide::{LANES, plus_product, widely};
 
 /// A vector for each slot, an axis after the other.
@@ -48,15 +48,44 @@ widely! {
     }
 }
 
+/// Makes vectors behind the last slot zero as far as a register reaches: no number, which may be left
+/// there, times what fills blocks up would be none.
+#[inline]
+pub(super) fn fill_up(vectors: &mut Vectors, slots: usize) {
+    for axis in vectors {
+        axis[slots..slots.next_multiple_of(LANES)].fill(0.0);
+    }
+}
+
+/// How far a slot, whose blocks these are, moves under the forces on those before it.
+#[inline]
+pub(super) fn gather(blocks: &[f64], forces: &mut Vectors, slot: usize) -> [f64; 3] {
+    let own = at(forces, slot);
+    set(forces, slot, DVec3::ZERO);
+    let moved = gather_all(blocks, forces);
+    set(forces, slot, own);
+    moved
+}
+
 widely! {
-    /// How far the one whose blocks these are moves under forces on the first slots.
-    pub(super) fn gather(blocks: &[f64], forces: &Vectors, count: usize) -> [f64; 3] {
+    /// The same of forces on slots up to it. Entries that are there to fill up are zero.
+    fn gather_all(blocks: &[f64], forces: &Vectors) -> [f64; 3] {
+        let count = blocks.len() / 9;
         let mut moved = [0.0; 3];
         for (c, sum) in moved.iter_mut().enumerate() {
             let part = |r: usize| entry(blocks, 3 * r + c, count);
-            let [x, y, z] = forces;
-            let forces = [&x[..count], &y[..count], &z[..count]];
-            *sum = dot_three::<FUSED>([part(0), part(1), part(2)], forces);
+            let rows = [part(0), part(1), part(2)];
+            let forces = [&forces[0][..count], &forces[1][..count], &forces[2][..count]];
+            let mut lanes = [0.0; LANES];
+            for k in (0..count).step_by(LANES) {
+                for r in 0..3 {
+                    let (row, force) = (&rows[r][k..k + LANES], &forces[r][k..k + LANES]);
+                    for l in 0..LANES {
+                        lanes[l] = plus_product::<FUSED>(lanes[l], row[l], force[l]);
+                    }
+                }
+            }
+            *sum = total::<FUSED>(&lanes, &[], &[]);
         }
         moved
     }
@@ -119,5 +148,39 @@ widely! {
             sum += lane;
         }
         sum
+    }
+}
+
+widely! {
+    /// Has the first slots be shifted by that much more under forces on the one whose blocks these are,
+    /// and turned as these turn their body now, no more as they did; by where slots were and are from its
+    /// centre.
+    pub(super) fn carry_otherwise(
+        blocks: &mut [f64],
+        shifts: &[f64],
+        arms: [&Vectors; 2],
+        turns: [[[f64; 3]; 3]; 2],
+    ) {
+        let (count, room) = (shifts.len(), blocks.len() / 9);
+        for c in 0..3 {
+            let [gone, comes] = [turns[0][c], turns[1][c]];
+            for r in 0..3 {
+                // Of the vector product of turn and arm.
+                let (a, b) = ((r + 1) % 3, (r + 2) % 3);
+                let [from_a, from_b] = [a, b].map(|axis: usize| &arms[0][axis][..count]);
+                let [to_a, to_b] = [a, b].map(|axis: usize| &arms[1][axis][..count]);
+                let entry = &mut blocks[(3 * r + c) * room..][..count];
+                for i in 0..count {
+                    let now = plus_product::<FUSED>(comes[a] * to_b[i], -comes[b], to_a[i]);
+                    let before = plus_product::<FUSED>(gone[a] * from_b[i], -gone[b], from_a[i]);
+                    entry[i] += now - before;
+                }
+                if r == c {
+                    for i in 0..count {
+                        entry[i] += shifts[i];
+                    }
+                }
+            }
+        }
     }
 }

@@ -1,13 +1,16 @@
 //! How a point that enters gives way to forces on another: the finite elements, and below their fineness
 //! the near field; and how bodies that nobody holds go along as a whole.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
-use super::Patch;
+use super::products::{at, carry_otherwise, set};
+use super::{Patch, blocks_at};
+use crate::algebra::MOST_POINTS;
 use crate::contact::ground::Ground;
 use crate::contact::mobility::Mobility;
 use crate::tool::near_field::NearField;
 use crate::tool::points::Point;
+use crate::tool::slot::Slot;
 
 impl Patch {
     /// Displacement of the point that enters, the first, per force on another.
@@ -66,22 +69,40 @@ impl Patch {
         other.mean(&mut found)
     }
 
-    /// From now on a body moves otherwise as a whole.
+    /// From now on a body moves otherwise as a whole, and forces act on it where its slots have been moved.
     pub(crate) fn move_otherwise(&mut self, body: u8, [before, now]: [Option<Mobility>; 2]) {
-        let carried = |mobility: Option<Mobility>, p, q| {
-            mobility.map_or(DMat3::ZERO, |mobility| mobility.between(p, q))
+        let is_alike = match (&before, &now) {
+            (Some(before), Some(now)) => before.is_alike(now),
+            _ => false,
         };
-        for i in 0..self.slots.len() {
-            for j in 0..=i {
-                let pair = [i, j].map(|slot| (self.slots[slot].body, self.slots[slot].at.position));
-                if let [(p_body, p), (q_body, q)] = pair
-                    && p_body == body
-                    && q_body == body
-                {
-                    let change = carried(now, p, q) - carried(before, p, q);
-                    self.put(i, j, self.compliance(i, j) + change);
-                }
+        let own = |slot: &Slot| slot.body == body;
+        let stays = |slot: &Slot| slot.at.position + slot.moved == slot.arm;
+        if is_alike && self.slots.iter().filter(|slot| own(slot)).all(stays) {
+            return;
+        }
+        let [shift, gone] = [now, before].map(|moves| moves.map_or(0.0, |moves| moves.shift));
+        let centre = |moves: Option<Mobility>| moves.map_or(DVec3::ZERO, |moves| moves.centre);
+        // Of other bodies' slots all is zero.
+        let mut shifts = [0.0; MOST_POINTS];
+        let (mut from, mut to) = ([[0.0; MOST_POINTS]; 3], [[0.0; MOST_POINTS]; 3]);
+        for (number, slot) in self.slots.iter_mut().enumerate() {
+            if own(slot) {
+                set(&mut from, number, slot.arm - centre(before));
+                slot.arm = slot.at.position + slot.moved;
+                set(&mut to, number, slot.arm - centre(now));
+                shifts[number] = shift - gone;
             }
+        }
+        let turns = |moves: Option<Mobility>, arm: DVec3| {
+            moves.map_or([[0.0; 3]; 3], |moves| moves.turns(arm).to_cols_array_2d())
+        };
+        for (number, _) in self.slots.iter().enumerate().filter(|(_, slot)| own(slot)) {
+            let change = [
+                turns(before, at(&from, number)),
+                turns(now, at(&to, number)),
+            ];
+            let blocks = &mut self.compliance[blocks_at(number)];
+            carry_otherwise(blocks, &shifts[..=number], [&from, &to], change);
         }
     }
 }
