@@ -8,7 +8,7 @@ import pytest
 from soft_scene import COARSE, error_of, moved, part, rest_places, seen_places, select
 
 RADIUS = 0.05 * 2.0 * np.sqrt(3.0)
-SOUTH = {"motion": "PUSH", "place": (0.0, 0.0, -1.0), "depth": 0.15, "radius": RADIUS}
+NORTH = {"motion": "PUSH", "place": (0.0, 0.0, 1.0), "depth": 0.15, "radius": RADIUS}
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def ball(palpate):
     bpy.ops.mesh.select_all(action="DESELECT")
     bpy.ops.object.mode_set(mode="OBJECT")
     for face in thing.data.polygons:
-        face.select = face.center.z > -0.3
+        face.select = face.center.z < 0.3
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.subdivide()
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -39,7 +39,7 @@ def longest_edge(mesh):
 @pytest.mark.at_length
 def test_a_dent_among_the_widest_faces_of_a_flat_mesh_is_fine(ball):
     assert longest_edge(ball.data) > 0.4 * RADIUS
-    assert bpy.ops.palpate.stroke(**SOUTH) == {"FINISHED"}
+    assert bpy.ops.palpate.stroke(**NORTH) == {"FINISHED"}
     assert len(seen_places(ball)) > 3 * len(ball.data.vertices)
     assert longest_edge(ball.palpate.carrier.data) < 0.3 * RADIUS
 
@@ -47,7 +47,7 @@ def test_a_dent_among_the_widest_faces_of_a_flat_mesh_is_fine(ball):
 @pytest.mark.at_length
 @pytest.mark.parametrize("act", ["convert_layers", "apply_layers"])
 def test_what_a_mesh_can_show_of_its_finer_dents_goes_into_it(ball, act):
-    assert bpy.ops.palpate.stroke(**SOUTH) == {"FINISHED"}
+    assert bpy.ops.palpate.stroke(**NORTH) == {"FINISHED"}
     own = rest_places(ball) + moved(ball, "Press 1")[: len(ball.data.vertices)]
     assert getattr(bpy.ops.palpate, act)() == {"FINISHED"}
     assert not ball.modifiers

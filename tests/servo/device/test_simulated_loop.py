@@ -130,6 +130,7 @@ def uninterrupted(loop, eventually):
     return device, servo
 
 
+@pytest.mark.in_time
 def test_a_clean_link_loses_nothing(loop, eventually):
     device, servo = uninterrupted(loop, eventually)
     link, report = servo.counters()["link"], device.stop()
