@@ -109,11 +109,13 @@ class Felt:
         nodes, inverse = np.unique(corners.reshape(-1), return_inverse=True)
         nodal_forces = np.zeros((len(nodes), 3))
         np.add.at(nodal_forces, inverse, nodal.reshape(-1, 3))
-        areas = np.zeros(len(which))
+        at_rest, areas = np.zeros((len(which), 3)), np.zeros(len(which))
+        np.add.at(at_rest, contact, share[:, None] * self.points.positions[point])
         np.add.at(areas, contact, share * self.points.areas[point])
         return BodyTouch(
             force=-forces.sum(axis=0),
             torque=-np.cross(places - pose.position, forces).sum(axis=0),
+            at_rest=at_rest,
             places=places,
             pushes=told["push"][which],
             areas=areas,

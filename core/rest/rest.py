@@ -6,11 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
 
 Array = NDArray[np.float64]
+
+# Places that are less than this share of the body's size apart are one.
+SAME = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +27,8 @@ class BodyTouch:
     ----------
     force : float64 (3,), on what touches it, newton, in the world.
     torque : float64 (3,), on that about its reference point, newton metres, in the world.
-    places : float64 (p, 3), pressed places where they are now, metres, in the world.
+    at_rest : float64 (p, 3), pressed places at rest, metres, in the body's own frame.
+    places : float64 (p, 3), these where they are now, metres, in the world.
     pushes : float64 (p,), normal forces there, newton, all > 0.
     areas : float64 (p,), the places' shares of the surface, square metres.
     nodes : int64 (k,), nodes of the mesh that carry force.
@@ -32,6 +37,7 @@ class BodyTouch:
 
     force: Array
     torque: Array
+    at_rest: Array
     places: Array
     pushes: Array
     areas: Array
@@ -78,12 +84,29 @@ class Rest:
 
     def displacements(self, young_modulus: float | None = None) -> Array:
         """Elastic displacements (n, 3) of the surface nodes in the body's frame, metres."""
-        touches = [*self.tools, *self.supports, *self.others]
-        nodes = np.concatenate([np.empty(0, np.int64), *(touch.nodes for touch in touches)])
-        forces = np.concatenate([np.empty((0, 3)), *(touch.nodal_forces for touch in touches)])
-        return self.body.deform(nodes, forces, young_modulus)
+        nodes = [touch.nodes for touch in self._touches]
+        forces = [touch.nodal_forces for touch in self._touches]
+        return self.body.deform(
+            np.concatenate([np.empty(0, np.int64), *nodes]),
+            np.concatenate([np.empty((0, 3)), *forces]),
+            young_modulus,
+        )
 
     def surface(self, young_modulus: float | None = None) -> Array:
-        """The surface nodes (n, 3), moved and deformed, metres, in the world."""
+        """The surface nodes (n, 3), moved and deformed, metres, in the world.
+
+        One that is a pressed place is where contact has it: beneath it the body gives way by its
+        near field, too, so that a tip is flat where it stands.
+        """
         nodes = self.body.mesh.nodes[self.body.compliance.free_surface]
-        return self.to_world(nodes + self.displacements(young_modulus))
+        surface = self.to_world(nodes + self.displacements(young_modulus))
+        tree = cKDTree(nodes)
+        for touch in self._touches:
+            away, found = tree.query(touch.at_rest)
+            nearest, is_node = np.asarray(found), away < SAME * np.ptp(nodes)
+            surface[nearest[is_node]] = touch.places[is_node]
+        return surface
+
+    @property
+    def _touches(self) -> tuple[BodyTouch, ...]:
+        return (*self.tools, *self.supports, *self.others)

@@ -229,6 +229,7 @@ def _touch(body: SoftBody, placement: Pose, told: RestTouch) -> BodyTouch:
     return BodyTouch(
         force=told["force"] @ turn,
         torque=told["torque"] @ turn,
+        at_rest=told["places"],
         places=(told["places"] + told["displacements"]) @ turn + placement.position,
         pushes=told["pushes"],
         areas=told["areas"],

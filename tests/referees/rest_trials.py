@@ -35,7 +35,7 @@ GRAVITY = 9.81
 # Of the weight times the size and of the work of hands in a tick, in which they go by 200 mm/s.
 MOST_GAINED = 1e-4
 # Of the size: how far the surface may be in the floor between contact points.
-MOST_SUNK = 0.05
+MOST_SUNK = 0.01
 # Of the size: how far the surface may stretch.
 MOST_STRETCHED = 1.5
 # Of the weight, while it still rolls.

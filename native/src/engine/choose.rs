@@ -245,10 +245,10 @@ impl Joint {
     /// The tool among whose points room is to be made; none for all.
     fn has_room(&self, number: u8, more: usize) -> Result<(), Option<u8>> {
         let slots = self.patch.slots();
-        if slots.iter().filter(|slot| slot.tool == number).count() + more > self.room.of_one {
+        if slots.iter().filter(|slot| slot.tool == number).count() + more > self.pace.of_one {
             return Err(Some(number));
         }
-        if slots.len() + more > self.room.of_all {
+        if slots.len() + more > self.pace.of_all {
             return Err(None);
         }
         Ok(())

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::choose::MARGIN;
+use super::joint::easing::Easing;
 use super::joint::{AllLed, Beside, Joint, Led};
 use crate::algebra::MOST_POINTS;
 use crate::contact::ground::Ground;
@@ -10,15 +11,9 @@ use crate::tool::coefficients::AllPosed;
 use crate::tool::collider::Collider;
 use crate::tool::collider::side::Side;
 use crate::tool::friction::across;
-use crate::tool::shape::tilt::TiltLimit;
+use crate::tool::shape::tilt::{Push, TiltLimit};
 use crate::tool::slot::Slot;
 
-/// Linearisations in one tick.
-const MOST_LINEARISATIONS: usize = 6;
-/// Multiplications that a tick takes for all tools, about, before it leaves the rest to the next.
-const MOST_WORK: usize = 500_000;
-/// The same with friction.
-const MOST_WORK_RUBBING: usize = 700_000;
 /// Points farther from the tool than this share of the margin are only watched.
 const WATCHED: f64 = 0.3;
 /// Displacements that are wrong by less than this share of the tool's reach have been found.
@@ -26,6 +21,14 @@ const CONVERGED: f64 = 3e-6;
 /// Where two tools press one point, each has a spring of this share of the point's own compliance: else
 /// nothing would say which of them carries what.
 const SHARING: f64 = 0.02;
+
+/// How a body and its tools are seen.
+#[derive(Clone, Copy)]
+struct Seen {
+    is_held: bool,
+    /// As the tick begins.
+    begins: bool,
+}
 
 impl Joint {
     /// Finds the equilibrium of the points with the tools, from the last tick's forces on: how many
@@ -38,23 +41,25 @@ impl Joint {
         beside: &mut Beside<'_>,
     ) -> (usize, bool) {
         let rubs = posed.iter().flatten().any(|tool| !tool.friction.is_none());
-        let most_work = if rubs { MOST_WORK_RUBBING } else { MOST_WORK };
-        self.see(grounds, led);
-        for made in 1..=MOST_LINEARISATIONS {
+        let pace = self.pace;
+        let most_work = if rubs { pace.work_rubbing } else { pace.work };
+        self.easing = Easing::default();
+        self.see(grounds, led, true);
+        for made in 1..=pace.linearisations {
             self.linearise(led, rubs);
             let before = self.effort.multiplications;
             // Forces aside take their share: pushes get no more with friction than without.
-            let left = most_work.saturating_sub(before).min(MOST_WORK);
+            let left = most_work.saturating_sub(before).min(pace.work);
             self.problem.solve(left);
             let solved = self.problem.work();
             let meets = self.meet_points(grounds, beside, left);
             self.push();
-            let is_held = !rubs || self.rubbing.rub(&mut self.patch, posed);
+            let is_held = !rubs || self.rubbing.rub(&mut self.patch, posed, pace.sweeping);
             if !rubs {
                 self.patch.displace();
             }
             self.look(led);
-            let error = self.see(grounds, led);
+            let error = self.see(grounds, led, false);
             self.count(solved, rubs, led);
             if error <= CONVERGED && is_held && meets {
                 return (made, true);
@@ -64,8 +69,11 @@ impl Joint {
             if after + (after - before) > most_work {
                 return (made, false);
             }
+            if pace.is_unhurried() {
+                self.easing.learn(made, error);
+            }
         }
-        (MOST_LINEARISATIONS, false)
+        (pace.linearisations, false)
     }
 
     /// Adds what a linearisation took.
@@ -100,16 +108,20 @@ impl Joint {
     }
 
     /// Holds distances and normals as the pushes now ask for; by which share of their tool's reach
-    /// displacements are wrong with these at most, about.
-    fn see(&mut self, grounds: &[Ground<'_>], led: &AllLed<'_>) -> f64 {
+    /// displacements are wrong with these at most, about. `begins`: with what was found in the tick before,
+    /// since when bodies were moved by their weight, perhaps right through a tool.
+    fn see(&mut self, grounds: &[Ground<'_>], led: &AllLed<'_>, begins: bool) -> f64 {
         let mut error = 0.0_f64;
         for (number, led) in led.iter().enumerate() {
             let Some(led) = led else { continue };
             for (body, ground) in grounds.iter().enumerate() {
                 if let Some(side) = led.collider.side(body) {
                     let pair = [number as u8, body as u8];
-                    let is_held = ground.mobility.is_none();
-                    error = error.max(self.see_one(pair, is_held, led.collider, side));
+                    let seen = Seen {
+                        is_held: ground.mobility.is_none(),
+                        begins,
+                    };
+                    error = error.max(self.see_one(pair, seen, led.collider, side));
                 }
             }
         }
@@ -118,7 +130,7 @@ impl Joint {
 
     /// The same for one tool on one body: what its gaps are from zero, and what its forces turned along the new
     /// normals would move.
-    fn see_one(&mut self, pair: [u8; 2], is_held: bool, collider: &Collider, side: &Side) -> f64 {
+    fn see_one(&mut self, pair: [u8; 2], seen: Seen, collider: &Collider, side: &Side) -> f64 {
         let tool = collider.tool();
         let Some(pose) = collider.pose() else {
             return 0.0;
@@ -126,10 +138,19 @@ impl Joint {
         let watched = WATCHED * MARGIN * side.surface().spacing();
         let own = |slot: &&Slot| slot.is_of(pair);
         let pushes = self.patch.slots().iter().filter(own);
-        let pushes = pushes.map(|slot| (slot.push * slot.normal, slot.at.normal));
-        let hold = TiltLimit::of(pushes, is_held);
+        let pushes = pushes.map(|slot| Push {
+            by: slot.push * slot.normal,
+            free: if seen.begins {
+                slot.normal
+            } else {
+                pose.rotation * slot.free.1
+            },
+            facing: slot.at.normal,
+        });
+        let hold = TiltLimit::of(pushes, seen.is_held);
         let hold = hold.filter(|_| !tool.is_endless());
         let hold = hold.map(|hold| hold.seen_from(&pose.rotation));
+        let part = self.easing.part;
         let (mut gap, mut turned, mut gives) = (0.0_f64, 0.0, 0.0_f64);
         for slot in self.patch.slots_mut().iter_mut() {
             if !slot.is_of(pair) {
@@ -152,6 +173,15 @@ impl Joint {
                 gives = gives.max(slot.gives);
             } else {
                 gap = gap.max(-distance);
+            }
+            if part < 1.0 && slot.seen.1 != slot.normal {
+                let eased = slot
+                    .normal
+                    .lerp(slot.seen.1, part)
+                    .normalize_or(slot.seen.1);
+                let place = pose.to_tool(slot.at.position + slot.moved);
+                let along = pose.rotation.transpose() * eased;
+                slot.seen = (tool.separation(place, along), eased);
             }
         }
         (gap + turned * gives) / tool.reach()

@@ -1,10 +1,12 @@
 //! All tools in one tick: one problem of contact, with the points beside them.
 
+pub(super) mod easing;
+mod pace;
 mod responses;
 
 use glam::DVec3;
 
-use crate::algebra::{MOST_IN_TICK, MOST_POINTS};
+use crate::algebra::MOST_POINTS;
 use crate::contact::ground::{Ground, MOST_BODIES, MOST_TOOLS, Memories};
 use crate::contact::mobility::{Mobility, Motion};
 use crate::fingers::press::{Answers, Presses};
@@ -16,29 +18,11 @@ use crate::tool::effort::Effort;
 use crate::tool::friction::{Rubbing, take_anchors};
 use crate::tool::patch::Patch;
 use crate::tool::shape::Pose;
-use crate::tool::slot::{MOST_NEAR, Slot};
+use crate::tool::slot::Slot;
 
+use easing::Easing;
+pub(super) use pace::Pace;
 use responses::Influence;
-
-/// Contact points that may be looked at at once.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Room {
-    pub of_all: usize,
-    pub of_one: usize,
-}
-
-impl Room {
-    /// As many as a tick of 1 kHz has time for.
-    pub(super) const IN_TICK: Self = Self {
-        of_all: MOST_IN_TICK,
-        of_one: MOST_NEAR,
-    };
-    /// As many as there is memory for.
-    pub(super) const MOST: Self = Self {
-        of_all: MOST_POINTS,
-        of_one: MOST_POINTS,
-    };
-}
 
 /// Points of a tool that may enter in one tick.
 pub(super) const MOST_ENTERING: usize = 24;
@@ -78,11 +62,11 @@ pub struct Joint {
     /// What points enter, nearest first.
     pub(super) entering: Vec<(f64, u32)>,
     pub(super) effort: Effort,
-    /// How often a tick may take up its bounded work.
-    pub(super) turns: usize,
+    /// What a tick may take.
+    pub(super) pace: Pace,
+    pub(super) easing: Easing,
     /// So far.
     pub(super) ticks: u32,
-    pub(super) room: Room,
     /// Whose slots there are.
     eras: [Option<u64>; MOST_TOOLS],
     bodies: [Option<u32>; MOST_BODIES],
@@ -103,9 +87,9 @@ impl Default for Joint {
             chosen: Vec::with_capacity(MOST_POINTS),
             entering: Vec::with_capacity(MOST_ENTERING + 1),
             effort: Effort::default(),
-            turns: 1,
+            pace: Pace::IN_TICK,
+            easing: Easing::default(),
             ticks: 0,
-            room: Room::IN_TICK,
             eras: [None; MOST_TOOLS],
             bodies: [None; MOST_BODIES],
             mobilities: [None; MOST_BODIES],
@@ -139,15 +123,7 @@ impl Joint {
         // Slots have gone and come.
         self.find_influence(grounds, beside);
         let posed = self.posed(led);
-        let (mut linearisations, mut exact) = self.settle(grounds, led, &posed, beside);
-        for _ in 1..self.turns {
-            if exact {
-                break;
-            }
-            self.effort.multiplications = 0;
-            let (more, found) = self.settle(grounds, led, &posed, beside);
-            (linearisations, exact) = (linearisations + more, found);
-        }
+        let (linearisations, exact) = self.settle(grounds, led, &posed, beside);
         self.find_motions(grounds, beside);
         self.keep_traces(beside.memories);
         let mut are_numbers = self.patch.slots().iter().all(|slot| slot.moved.is_finite());

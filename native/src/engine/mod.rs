@@ -20,7 +20,7 @@ use crate::contact::ground::{Ground, Memories};
 use crate::contact::mobility::Motion;
 use crate::fingers::press::{Answers, Presses, Reaction};
 use crate::fingers::several::Several;
-use joint::{AllLed, Beside, Joint, Room};
+use joint::{AllLed, Beside, Joint, Pace};
 
 /// The contact of all fingers, from tick to tick.
 #[derive(Debug, Clone, Default)]
@@ -83,11 +83,13 @@ impl Engine {
         beside.answers
     }
 
-    /// For whoever has no clock: from now on a tick may take up its bounded work so often, and more
-    /// often than once look at as many points as there is memory for.
-    pub fn set_turns(&mut self, turns: usize) {
-        self.joint.turns = turns;
-        self.joint.room = if turns > 1 { Room::MOST } else { Room::IN_TICK };
+    /// Whether ticks from now on are bounded as one of 1 kHz has to be, or take what they need.
+    pub fn set_hurried(&mut self, is_hurried: bool) {
+        self.joint.pace = if is_hurried {
+            Pace::IN_TICK
+        } else {
+            Pace::UNHURRIED
+        };
     }
 
     /// How a body that nobody holds moved as a whole in the last tick, in its own frame.

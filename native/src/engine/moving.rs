@@ -20,7 +20,7 @@ impl Joint {
 
     /// Takes over how bodies are to move in this tick.
     pub(super) fn set_moving(&mut self, grounds: &[Ground<'_>]) {
-        let is_due = self.turns > 1 || self.ticks % ARMS_EVERY == 0;
+        let is_due = self.pace.is_unhurried() || self.ticks % ARMS_EVERY == 0;
         self.ticks = self.ticks.wrapping_add(1);
         for (body, before) in self.mobilities.iter_mut().enumerate() {
             let now = grounds.get(body).and_then(|ground| ground.mobility);

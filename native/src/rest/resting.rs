@@ -25,8 +25,6 @@ const LONGEST_RUBBING: f64 = 0.5;
 /// While it goes by more than this share of its size in a millisecond, ticks may be as long as that.
 const BRISK: f64 = 1e-4;
 const MILLISECOND: f64 = 1e-3;
-/// How often a tick takes up the work that one of the servo has to be done with.
-const TURNS: usize = 20;
 /// A body that nobody holds, and tools on it.
 #[derive(Debug, Clone)]
 pub struct Resting {
@@ -108,7 +106,7 @@ impl Resting {
     /// # Errors
     /// [`Restless::NotANumber`].
     pub fn tick(&mut self, dt: f64, is_hurried: bool) -> Result<Motion, Restless> {
-        self.engine.set_turns(if is_hurried { 1 } else { TURNS });
+        self.engine.set_hurried(is_hurried);
         let body = Arc::clone(&self.prop.body);
         let mobility = self.prop.mobility(self.young_modulus, dt);
         let ground = Ground {

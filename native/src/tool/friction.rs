@@ -17,10 +17,27 @@ use crate::algebra::cholesky::dot_within;
 use crate::algebra::wide::widely;
 use crate::algebra::{MOST_POINTS, room};
 
-/// Sweeps in one linearisation. From the tick before a few are enough.
-const MOST_SWEEPS: usize = 16;
-/// Multiplications of the sweeps in one linearisation, about; one sweep there is always.
-const MOST_WORK: usize = 80_000;
+/// Bounds on the sweeps in one linearisation; one there is always.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Sweeping {
+    pub sweeps: usize,
+    /// Multiplications of these, about.
+    pub work: usize,
+}
+
+impl Sweeping {
+    /// From the tick before a few are enough.
+    pub(crate) const IN_TICK: Self = Self {
+        sweeps: 16,
+        work: 80_000,
+    };
+    /// Without a clock.
+    pub(crate) const UNHURRIED: Self = Self {
+        sweeps: 320,
+        work: 1_600_000,
+    };
+}
+
 /// For fewer sweeps than these no matrix is set up.
 const WORTH_A_MATRIX: usize = 2;
 /// Forces that move their points by less than this share of the tool's reach have been found.
@@ -68,7 +85,7 @@ impl Rubbing {
 
     /// Finds the forces aside for the pushes of all slots, and moves the slots; false where the bound
     /// on the sweeps ended it.
-    pub(crate) fn rub(&mut self, patch: &mut Patch, tools: &AllPosed) -> bool {
+    pub(crate) fn rub(&mut self, patch: &mut Patch, tools: &AllPosed, most: Sweeping) -> bool {
         let near = patch.slots().len();
         self.rubbed.clear();
         let mut pressed = 0;
@@ -95,7 +112,7 @@ impl Rubbing {
         let reach = present().fold(f64::INFINITY, |least, tool| least.min(tool.reach));
         let least = CONVERGED * reach;
         let sweep = 4 * rubbed * rubbed;
-        let sweeps = (MOST_WORK / sweep).min(MOST_SWEEPS);
+        let sweeps = (most.work / sweep).min(most.sweeps);
         if sweeps < WORTH_A_MATRIX {
             self.work += 9 * (rubbed + near) * near;
             return self.rub_in_place(patch, tools) <= least;

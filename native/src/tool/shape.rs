@@ -184,6 +184,14 @@ impl Tool {
         (distance - self.radius, normal)
     }
 
+    /// How far a place is from it along a direction of unit length, at most its distance. Not of an
+    /// endless one.
+    #[inline]
+    pub fn separation(&self, place: DVec3, direction: DVec3) -> f64 {
+        let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
+        self.core.iter().fold(f64::INFINITY, nearest) - self.radius
+    }
+
     /// Multiplications that a distance takes, about.
     #[inline]
     pub fn effort(&self) -> usize {

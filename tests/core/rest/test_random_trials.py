@@ -8,9 +8,24 @@ PINCHED_BY_EDGES = 174
 # Hands that stop turned a bar in the tick before by milliradians, but not how far it gave way with
 # it: 2.5e-4 and 1.3e-4 of weight times size came out of it.
 TURNED_IN_HANDS = (102, 742)
+# A plate goes up past the edge by which it pushes: its normal turned to and fro with the point that
+# it pushed, and how far aside it may push was found by the pushes which that turned.
+PAST_AN_EDGE = (375, 459, 471, 491)
+# So many points stick that friction was not found.
+MANY_STICK = 835
+# A cube comes to stand on its tip, which gives way beneath its elements.
+ON_ITS_TIP = 312
 # A slab falls over from its edge, for longer than a second.
 FALLING_OVER = 151
-OFTEN_THROWN = [*range(6), PINCHED_BY_EDGES, *TURNED_IN_HANDS, FALLING_OVER]
+OFTEN_THROWN = [
+    *range(6),
+    PINCHED_BY_EDGES,
+    *TURNED_IN_HANDS,
+    *PAST_AN_EDGE,
+    MANY_STICK,
+    ON_ITS_TIP,
+    FALLING_OVER,
+]
 RARELY_THROWN = range(6, 33)
 
 

@@ -246,12 +246,12 @@ impl System {
 /// How far unit forces along three ways, which act on a body so far from its centre, move that, and a
 /// place besides per metre along each axis that it is from it.
 fn carried(mobility: &Mobility, arm: DVec3, ways: &DMat3) -> [Three; 4] {
-    let mut carried = [[0.0; 12]; 4];
+    let (turns, mut carried) = (mobility.turns(arm), [[0.0; 12]; 4]);
     for (k, way) in [ways.x_axis, ways.y_axis, ways.z_axis]
         .into_iter()
         .enumerate()
     {
-        let turn = mobility.turn * arm.cross(way);
+        let turn = turns * way;
         let far = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| turn.cross(axis));
         let moves = [way * mobility.shift, far[0], far[1], far[2]];
         for (carried, moves) in carried.iter_mut().zip(moves) {

@@ -33,6 +33,17 @@ struct Cone {
     sine: f64,
 }
 
+/// How a tool pushes a place of the surface.
+#[derive(Debug, Clone, Copy)]
+pub struct Push {
+    /// Along the tool's normal as it is held.
+    pub by: DVec3,
+    /// That normal, were it not.
+    pub free: DVec3,
+    /// The body's outward normal there.
+    pub facing: DVec3,
+}
+
 /// Limit of the tilt: the directions that pushes are held within.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TiltLimit {
@@ -43,23 +54,29 @@ pub struct TiltLimit {
 }
 
 impl TiltLimit {
-    /// From pushes (along the tool's normals) and the outward normals of the body where they push.
-    /// Only what goes into the body counts: the far side of a thin part is pushed outwards, and the
-    /// part would else be felt turned round. Of none, nowhere.
+    /// From pushes. Only what goes into the body counts: the far side of a thin part is pushed
+    /// outwards, and the part would else be felt turned round. Of none, nowhere.
     ///
-    /// A body that nobody holds may slide off a tool, edge on edge. Where all pushes together lean
-    /// farther from what they press than the limit, it is as much wider, up to none at all: it comes
-    /// and goes without a jump. One that is held stays under its tool, and so its pushes in the limit.
-    pub fn of(pushes: impl Iterator<Item = (DVec3, DVec3)>, is_held: bool) -> Option<Self> {
+    /// A body that nobody holds may slide off a tool, edge on edge. Where all pushes together would
+    /// lean farther from what they press than the limit, were there none, it is as much wider, up to
+    /// none at all: it comes and goes without a jump. (As they lean within it, both the limit and none
+    /// could hold, and the body would be pushed from one to the other.) One that is held stays under
+    /// its tool, and so its pushes in the limit.
+    pub fn of(pushes: impl Iterator<Item = Push>, is_held: bool) -> Option<Self> {
         let (mut facing, mut most, mut is_through) = (DVec3::ZERO, 0.0, false);
         let mut all = DVec3::ZERO;
-        for (push, normal) in pushes {
-            let (outward, length) = (push.dot(normal), push.length());
+        for Push {
+            by,
+            free,
+            facing: normal,
+        } in pushes
+        {
+            let (outward, length) = (by.dot(normal), by.length());
             let into = (-outward).max(0.0);
             facing += normal * into;
             most += into;
             if into > 0.0 {
-                all += push * (into / (LEANING * length)).min(1.0);
+                all += free * length.min(into / LEANING);
             }
             is_through |= outward > OUTWARD * length;
         }
@@ -101,7 +118,7 @@ impl TiltLimit {
     pub fn is_beyond(&self, far: f64, free: (f64, DVec3), place: DVec3, tool: &Tool) -> bool {
         // No direction is farther than that of the tool as it is.
         free.0 > far
-            && (self.common.on_rim(free.1)).is_some_and(|rim| separation(place, rim, tool) > far)
+            && (self.common.on_rim(free.1)).is_some_and(|rim| tool.separation(place, rim) > far)
     }
 
     /// Distance and normal of a tool at a place, held; all of it in the tool's frame. `free` are those
@@ -170,13 +187,6 @@ impl Cone {
         };
         let aside = first * turn.x + second * turn.y;
         let direction = self.axis * self.cosine + aside * self.sine;
-        (separation(place, direction, tool), direction)
+        (tool.separation(place, direction), direction)
     }
-}
-
-/// How far a place is from a tool along a direction.
-#[inline]
-fn separation(place: DVec3, direction: DVec3, tool: &Tool) -> f64 {
-    let nearest = |least: f64, core: &DVec3| least.min((place - *core).dot(direction));
-    tool.core().iter().fold(f64::INFINITY, nearest) - tool.radius()
 }
