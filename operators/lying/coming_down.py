@@ -22,6 +22,7 @@ from . import rest_layer
 from .free_body import LANDING, FreeBody, Lying, lie, supports_under
 from .free_pile import FreePile, piled
 from .laid import is_animated, lay
+from .supports import Supports
 from .together import together
 
 # Said where an object that is pressed does not come to rest.
@@ -38,6 +39,11 @@ class Alone:
     def size(self) -> float:
         """Diagonal, metres."""
         return self.free.drawn.size
+
+    @property
+    def supports(self) -> Supports:
+        """What it rests on."""
+        return self.free.supports
 
     @property
     def floor(self) -> float | None:

@@ -144,9 +144,8 @@ class FreeBody:
         pressing = [PressingTool(one.tool, one.pose, one.force) for one in touches]
         moved = drawn.drawn_displacement(displacements, pressing)
         frame = frame_at(drawn.frame, rest.placement)
-        return Lying(
-            frame, touches, displacements, above(drawn, frame, moved, self.supports.floor), rest
-        )
+        shown = self.supports.keep_out(drawn, frame, moved)
+        return Lying(frame, touches, displacements, shown, rest)
 
 
 def lie(
@@ -249,21 +248,3 @@ def chosen_body(body: SoftBody, density: float, young_modulus: float | None = No
             return one
     _chosen[body] = replace(body, density=density, young_modulus=young)
     return _chosen[body]
-
-
-def above(
-    drawn: DrawnBody, frame: BodyFrame, moved: NDArray[np.float32], floor: float | None
-) -> NDArray[np.float32]:
-    """Displacements, none of which leads beneath a floor: between nodes a body may sag farther."""
-    if floor is None:
-        return moved
-    local = (drawn.rest + moved).reshape(-1, 3).astype(np.float64)
-    places = frame.world_from_body(frame.body_from_local(local))
-    beneath = np.flatnonzero(places[:, 2] < floor / frame.metres_per_unit)
-    if not len(beneath):
-        return moved
-    places[beneath, 2] = floor / frame.metres_per_unit
-    lifted = frame.local_from_body(frame.body_from_world(places[beneath]))
-    found = moved.copy()
-    found.reshape(-1, 3)[beneath] = lifted - drawn.rest.reshape(-1, 3)[beneath]
-    return found

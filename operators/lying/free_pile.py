@@ -22,7 +22,7 @@ from ...core.rest.rest import Rest
 from ...core.rest.support import Floor, Support
 from ...core.servo.session import Body, PropAmong
 from ..object.drawn_body import DrawnBody
-from .free_body import Lying, above, chosen_body, scene_gravity, supports_under
+from .free_body import Lying, chosen_body, scene_gravity, supports_under
 from .placement import frame_at, placement_of
 from .supports import Supports
 
@@ -160,7 +160,8 @@ class FreePile:
             displacements = displacements + bent
         pressing = [PressingTool(one.tool, one.pose, one.force) for one in touches if one.touching]
         moved = drawn.drawn_displacement(displacements, pressing)
-        return Lying(frame, touches, displacements, above(drawn, frame, moved, self.floor), rest)
+        shown = self.supports.keep_out(drawn, frame, moved)
+        return Lying(frame, touches, displacements, shown, rest)
 
 
 def piled(

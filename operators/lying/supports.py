@@ -15,6 +15,7 @@ from ...core.errors import PalpateError
 from ...core.rest.support import Floor, Support
 from ..object.drawn_body import DrawnBody
 from ..place.evaluation import evaluated
+from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import frame_of, metres_per_unit
 from .collider_tool import collider_tools
 from .laid import found_floor
@@ -22,6 +23,9 @@ from .placement import placement_of
 
 # Share of its size by which an object may be beneath the ground and still stand on it.
 ROUNDING = 1e-4
+# A vertex whose normal is that of the support's surface to this cosine is on the far side of a part
+# that the support is in; at an edge it may be one of either side.
+FAR_SIDE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +48,54 @@ class Supports:
         gap = np.inf if self.floor is None else low[2] - self.floor
         for tool, pose in self.ways:
             if tool is not None:
-                core = pose.to_world(tool.core)
-                least, most = core.min(axis=0) - tool.radius, core.max(axis=0) + tool.radius
+                least, most = _bounds(tool, pose)
                 if (least[:2] < high[:2]).all() and (low[:2] < most[:2]).all():
                     gap = min(gap, low[2] - most[2] if high[2] > least[2] else np.inf)
         return max(float(gap), 0.0)
+
+    def keep_out(
+        self, drawn: DrawnBody, frame: BodyFrame, moved: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """Displacements (3 p,) of the drawn vertices, local units, none of which leads into a
+        support: where that presses, the body gives way by more than its elements show.
+        """
+        local = (drawn.rest + moved).reshape(-1, 3).astype(np.float64)
+        metres = frame.metres_per_unit
+        places = frame.world_from_body(frame.body_from_local(local)) * metres
+        found = places.copy()
+        for tool, pose in self.ways:
+            if tool is not None:
+                _leave(found, tool, pose, drawn, frame)
+        if self.floor is not None:
+            found[:, 2] = np.maximum(found[:, 2], self.floor)
+        led = np.flatnonzero((found != places).any(axis=1))
+        if not len(led):
+            return moved
+        back = frame.local_from_body(frame.body_from_world(found[led] / metres))
+        shown = moved.copy()
+        shown.reshape(-1, 3)[led] = back - drawn.rest.reshape(-1, 3)[led]
+        return shown
+
+
+def _leave(
+    places: NDArray[np.float64], tool: Tool, pose: Pose, drawn: DrawnBody, frame: BodyFrame
+) -> None:
+    """Lead drawn vertices that are in a support out of it, but those that have come through it."""
+    low, high = _bounds(tool, pose)
+    near = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
+    if not len(near):
+        return
+    distances, normals = tool.distance(pose.to_tool(places[near]))
+    outward = normals @ pose.rotation.T
+    facing = drawn.hung.normals[drawn.hung.triangle[near]] @ frame.rotation.T
+    within = (distances < 0.0) & (np.einsum("kx,kx->k", outward, facing) < FAR_SIDE)
+    places[near[within]] -= distances[within, None] * outward[within]
+
+
+def _bounds(tool: Tool, pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The least and the largest coordinates of a tool in the world, metres."""
+    core = pose.to_world(tool.core)
+    return core.min(axis=0) - tool.radius, core.max(axis=0) + tool.radius
 
 
 def supports_of(

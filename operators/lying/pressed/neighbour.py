@@ -14,9 +14,10 @@ from ...object.drawn_body import DrawnBody
 from ...scene.object_handle import ObjectHandle
 from .. import rest_layer
 from ..before import Before
-from ..free_body import Lying, above
+from ..free_body import Lying
 from ..laid import move
 from ..placement import apart, frame_at
+from ..supports import Supports
 
 Load = tuple[NDArray[np.int64], NDArray[np.float64]]
 
@@ -36,7 +37,7 @@ class Neighbour:
     body : the same at the object's density and Young's modulus.
     before : how the object lay.
     rested : where it came to rest before the press.
-    floor : height of what all rest on, metres; None without one.
+    supports : what all rest on.
     """
 
     handle: ObjectHandle
@@ -44,7 +45,7 @@ class Neighbour:
     body: SoftBody
     before: Before
     rested: Lying
-    floor: float | None
+    supports: Supports
     _shown: tuple[Pose, NDArray[np.float64]] | None = None
 
     def follow(self, placement: Pose, load: Load) -> None:
@@ -64,7 +65,7 @@ class Neighbour:
             frame = frame_at(frame, placement)
             move(thing, frame)
         moved = self.drawn.drawn_displacement(displacements)
-        rest_layer.show(thing, above(self.drawn, frame, moved, self.floor))
+        rest_layer.show(thing, self.supports.keep_out(self.drawn, frame, moved))
 
     def give_back(self) -> None:
         """Have the object as it was before."""
@@ -89,7 +90,7 @@ class Neighbour:
 
 
 def neighbour(
-    thing: bpy.types.Object, drawn: DrawnBody, body: SoftBody, rested: Lying, floor: float | None
+    thing: bpy.types.Object, drawn: DrawnBody, body: SoftBody, rested: Lying, supports: Supports
 ) -> Neighbour:
     """An object as a neighbour of one that will be pressed."""
-    return Neighbour(ObjectHandle.of(thing), drawn, body, Before.of(thing), rested, floor)
+    return Neighbour(ObjectHandle.of(thing), drawn, body, Before.of(thing), rested, supports)

@@ -18,7 +18,7 @@ from ...object.drawn_body import DrawnBody, open_body
 from ...scene.body_frame import BodyFrame
 from ..before import Before
 from ..coming_down import Alone, lying_bodies, show
-from ..free_body import LANDING, Lying, above
+from ..free_body import LANDING, Lying
 from ..free_pile import FreePile
 from ..laid import lay, move
 from ..placement import apart, frame_at, placement_of
@@ -75,7 +75,7 @@ class PressedProp:
         others = zip(things[1:], opened[1:], bodies, lying, strict=True)
         return cls(
             replace(drawn, body=first, frame=rested.frame),
-            tuple(neighbour(*other, coming.floor) for other in others),
+            tuple(neighbour(*other, coming.supports) for other in others),
             coming,
             rested,
             Before.of(thing),
@@ -138,11 +138,11 @@ class PressedProp:
         return moved or any(other.has_moved for other in self.others)
 
     def beyond_rest(self, drawn: DrawnBody, moved: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Displacements (3 p,) of the drawn vertices beside those by which it rested, and none of
-        which leads beneath the floor.
+        """Displacements (3 p,) of the drawn vertices beside those by which it rested, none of which
+        leads into what bears it.
         """
-        over = above(drawn, drawn.frame, moved, self._coming.floor)
-        beyond: NDArray[np.float32] = over - self._rested.moved
+        shown = self._coming.supports.keep_out(drawn, drawn.frame, moved)
+        beyond: NDArray[np.float32] = shown - self._rested.moved
         return beyond
 
 

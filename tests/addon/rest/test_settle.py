@@ -87,6 +87,24 @@ def test_a_floor_at_a_height_and_one_that_is_leant(free_cube, board):
     assert free_cube.location.z == pytest.approx(0.025, abs=5e-4)
 
 
+def test_what_is_drawn_ends_where_a_collider_begins(free_cube, board):
+    free_cube.palpate.floor = "NONE"
+    free_cube.palpate.density *= 10.0
+    free_cube.location.z = 0.03
+    board()
+    bpy.ops.palpate.settle()
+    drawn = world_places(free_cube)
+    assert drawn[:, 2].min() == pytest.approx(0.0, abs=2e-6)
+    lying = part("operators.rest.settle").settle(
+        [free_cube], bpy.context.evaluated_depsgraph_get()
+    )[0]
+    # By its elements alone it would end in it.
+    body = lying.rest.body
+    moved = lying.rest.displacements()
+    nodes = lying.rest.to_world(body.mesh.nodes[body.compliance.free_surface] + moved)
+    assert nodes[:, 2].min() < -1e-4
+
+
 @pytest.mark.parametrize(("degrees", "stays"), [(15.0, True), (40.0, False)])
 def test_friction_holds_it_on_a_slope(free_cube, board, degrees, stays):
     turn = Matrix.Rotation(np.radians(degrees), 4, "Y")
