@@ -1,11 +1,20 @@
-"""Memory that this process can still get without swapping."""
+"""Memory that can still be had without swapping, and arrays that give theirs back at once."""
 
 from __future__ import annotations
 
+import mmap
+import sys
 from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 
+import numpy as np
 import psutil
+from numpy.typing import NDArray
+
+# Arrays of more bytes have memory of their own. As many the system clears at once, where it may.
+APART_ABOVE = 1_000_000
+CLEARED_AT_ONCE = 2**21
 
 
 @dataclass(frozen=True)
@@ -50,3 +59,19 @@ def available_memory(groups_root: Path = Path("/sys/fs/cgroup")) -> int:
     left = (group.bytes_left(groups_root) for group in CONTROL_GROUPS)
     system = int(psutil.virtual_memory().available)
     return min([system, *(count for count in left if count is not None)])
+
+
+def zeros_apart(shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """Zeros of that shape in Fortran order, whose memory goes back to the system with the array.
+
+    glibc keeps what is freed, once arrays of up to 32 MB have come and gone, in holes between what
+    is in use; other systems give large pieces back by themselves. Pages that nothing is written to
+    take no memory.
+    """
+    count = 8 * prod(shape)
+    if sys.platform != "linux" or count <= APART_ABOVE:
+        return np.zeros(shape, order="F")
+    memory = mmap.mmap(-1, count, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+    if count >= CLEARED_AT_ONCE and hasattr(mmap, "MADV_HUGEPAGE"):
+        memory.madvise(mmap.MADV_HUGEPAGE)
+    return np.frombuffer(memory).reshape(shape, order="F")

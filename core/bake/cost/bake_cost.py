@@ -14,8 +14,9 @@ PROCESS_GROWTH = 1.35
 
 # Interactions before rounding, as a share of the dense table.
 COMPRESSING_SHARE = 0.1
-# Floating point operations to compress: each cluster of columns multiplies the full factor.
-COMPRESSING_FLOPS = 0.4
+# Floating point operations to compress, a node and a byte of the factor: each cluster of columns
+# multiplies all of it.
+COMPRESSING_FLOPS = 1.0
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,11 @@ def planned_cost(plan: EliminationPlan, form: str, threads: int | None = None) -
             form,
         )
     factor = replace(plan, table_itemsize=0)
-    flops = factor.weight + compressing_flops(free, factor.peak_bytes)
+    flops = factor.weight + compressing_flops(free, factor.factor_bytes)
     peak = int(PROCESS_GROWTH * factor.peak_bytes + COMPRESSING_SHARE * table)
     return BakeCost(nodes, free, flops / dgemm_rate(threads), peak, 0, form)
 
 
 def compressing_flops(free: int, factor_bytes: float) -> float:
-    """Floating point operations to compress a table of so many columns."""
+    """Floating point operations to compress the table of so many nodes, from a factor of bytes."""
     return COMPRESSING_FLOPS * free * factor_bytes

@@ -27,14 +27,24 @@ class BlockMatrix:
 
     @property
     def edges(self) -> NDArray[np.int64]:
-        """Pairs of different nodes with a nonzero block, (e, 2), each pair once."""
+        """Pairs of different nodes with a nonzero block, (e, 2), each pair once; of both halves."""
         above = self.rows < self.columns
         return np.stack([self.rows[above], self.columns[above]], axis=1)
+
+    def upper_half(self, place: NDArray[np.int64]) -> BlockMatrix:
+        """The blocks whose row comes first, or with the column, where node i is at ``place[i]``."""
+        kept = place[self.rows] <= place[self.columns]
+        return BlockMatrix(self.node_count, self.rows[kept], self.columns[kept], self.blocks[kept])
 
     @property
     def nbytes(self) -> int:
         """Bytes of the blocks and of their numbers."""
         return self.rows.nbytes + self.columns.nbytes + self.blocks.nbytes
+
+    @property
+    def index_bytes(self) -> int:
+        """Bytes of three numbers a block."""
+        return 3 * self.rows.nbytes
 
 
 def free_blocks(stiffness: csr_array, free: NDArray[np.int64]) -> BlockMatrix:

@@ -19,8 +19,8 @@ from ...stiffness.freedoms import freedoms
 from ..ordering.dissection import dissect
 from ..ordering.symbolic import Front, SymbolicFactor, analyse
 from .block_matrix import BlockMatrix
-from .extend_add import Run, extend_add, runs_between
-from .numeric import EntriesByFront, targets_of_child
+from .extend_add import Run, extend_add, runs_between, targets_of_child
+from .numeric import EntriesByFront
 from .upper_tiles import UpperTiles, tile_edges
 from .work import FrontWork
 
@@ -171,12 +171,11 @@ class RepeatedElimination:
         """
         updates: dict[int, UpperTiles] = {}
         factors = []
-        ordered = self.entries.in_order(blocks)
         with threads_by_work() as suit:
             for index, front in enumerate(self.symbolic.fronts):
                 work = FrontWork.of(front)
                 suit(work.flops)
-                own, updates[index] = self._eliminated(index, ordered, updates)
+                own, updates[index] = self._eliminated(index, blocks, updates)
                 factors.append(own)
         return CholeskyFactor(freedoms(self.symbolic.order), tuple(factors))
 
@@ -187,10 +186,10 @@ class RepeatedElimination:
         size, boundary = 3 * front.pivot_count, freedoms(front.boundary)
         pivots = np.zeros((size, size), order="F")
         border = np.zeros((size, len(boundary)), order="F")
-        schur = UpperTiles.zeros(len(boundary))
+        schur = UpperTiles(len(boundary))
         self.entries.add_to(index, front, blocks, pivots, border)
-        for child, runs in zip(front.children, self.runs[index], strict=True):
-            extend_add(updates.pop(child), runs, pivots, border, schur)
+        children = [updates.pop(child) for child in front.children]
+        extend_add(list(zip(children, self.runs[index], strict=True)), pivots, border, schur)
         factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
         if breakdown:
             raise NotPositiveDefiniteError

@@ -6,12 +6,16 @@ order, in consecutive runs. Runs are added as slices, several times faster than 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..ordering.symbolic import Front
 from .upper_tiles import UpperTiles
+
+AXES = np.arange(3)
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,16 @@ class Run:
     parent_tile: int
     parent: slice
     onward: slice
+
+
+def targets_of_child(child: Front, parent: Front) -> NDArray[np.int64]:
+    """Parent's freedom, pivots first, of each freedom of the child's boundary."""
+    nodes = np.where(
+        child.boundary < parent.stop,
+        child.boundary - parent.start,
+        parent.pivot_count + np.searchsorted(parent.boundary, child.boundary),
+    )
+    return (3 * nodes[:, None] + AXES).ravel()
 
 
 def runs_between(
@@ -77,30 +91,50 @@ def runs_between(
 
 
 def extend_add(
+    children: Sequence[tuple[UpperTiles, list[Run]]],
+    pivots: NDArray[np.float64],
+    border: NDArray[np.float64],
+    schur: UpperTiles,
+) -> None:
+    """Add children's Schur complements to their parent's three parts, in place.
+
+    Columns ascend in all of them alike, so the parent's are made one block after another, and each
+    block of a child's is given up as soon as all of it has been added.
+
+    Parameters
+    ----------
+    children : (m, m) each, and its runs from :func:`runs_between`; of the tiles nothing is left.
+    pivots : (p, p), upper half.
+    border : (p, b), pivots by boundary.
+    schur : (b, b), without columns before.
+    """
+    added = [0] * len(children)
+    for parent_tile in range(-1, len(schur.edges) - 1):
+        if parent_tile >= 0:
+            schur.add_column()
+        for which, (child, runs) in enumerate(children):
+            while added[which] < len(runs) and runs[added[which]].parent_tile == parent_tile:
+                column = runs[added[which]]
+                _add_columns(child, runs[: added[which] + 1], pivots, border, schur)
+                added[which] += 1
+                if added[which] == len(runs) or runs[added[which]].child_tile != column.child_tile:
+                    child.give_up(column.child_tile)
+
+
+def _add_columns(
     child: UpperTiles,
     runs: list[Run],
     pivots: NDArray[np.float64],
     border: NDArray[np.float64],
     schur: UpperTiles,
 ) -> None:
-    """Add a child's Schur complement to its parent's three parts, in place.
-
-    Parameters
-    ----------
-    child : (m, m).
-    runs : from :func:`runs_between`.
-    pivots : (p, p), upper half.
-    border : (p, b), pivots by boundary.
-    schur : (b, b).
-    """
-    for index, column in enumerate(runs):
-        for row in runs[: index + 1]:
-            source = child.tiles[column.child_tile][row.child_tile][row.child, column.child]
-            if column.parent_tile < 0:
-                pivots[row.parent, column.parent] += source
-            elif row.parent_tile < 0:
-                border[row.parent, column.onward] += source
-            else:
-                schur.tiles[column.parent_tile][row.parent_tile][row.parent, column.parent] += (
-                    source
-                )
+    """Add the columns of the last run, down to the diagonal."""
+    column = runs[-1]
+    for row in runs:
+        source = child.tiles[column.child_tile][row.child_tile][row.child, column.child]
+        if column.parent_tile < 0:
+            pivots[row.parent, column.parent] += source
+        elif row.parent_tile < 0:
+            border[row.parent, column.onward] += source
+        else:
+            schur.tiles[column.parent_tile][row.parent_tile][row.parent, column.parent] += source

@@ -12,26 +12,28 @@ Loads come from the front's children or act on its pivots; W has no entries for 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dtrsm
 from scipy.linalg.lapack import dpotrf
 
+from ...machine.available_memory import zeros_apart
 from ...machine.blas_threads import threads_by_work
 from ..free_body.carried_loads import CarriedLoads
 from ..ordering.symbolic import Front, SymbolicFactor
 from .block_matrix import BlockMatrix
-from .extend_add import extend_add, runs_between
+from .extend_add import AXES, extend_add, runs_between, targets_of_child
 from .loose_body import refuse_loose
+from .passed_loads import Panel, arriving, panel_edges
 from .upper_tiles import UpperTiles
 from .work import CHOLESKY_WEIGHT, FRONT_WEIGHT, MOVE_WEIGHT, SOLVE_WEIGHT, FrontWork, Meter
 
 # Floating point operations in one call of BLAS at most: some hundredths of a second.
 FLOPS_PER_CALL = 2e9
-
-AXES = np.arange(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +53,10 @@ class LoadRows:
 
 @dataclass(frozen=True, eq=False)
 class _Update:
-    """Update of a front's boundary: Schur complement (b, b) and loads (b, c)."""
+    """Update of a front's boundary: Schur complement (b, b) and loads (b, c), in panels."""
 
     schur: UpperTiles
-    loads: NDArray[np.float64]
+    loads: list[Panel]
 
 
 def inverse_factor(
@@ -73,93 +75,82 @@ def inverse_factor(
         A matrix that is not positive definite: the body is not held.
     """
     entries = EntriesByFront(matrix.rows, matrix.columns, symbolic)
-    blocks = entries.in_order(matrix.blocks)
+    edges = panel_edges(symbolic.fronts)
     works = [FrontWork.of(front) for front in symbolic.fronts]
-    # One allocation for all rows, to avoid fragmentation by the fronts' temporary arrays.
-    room = np.zeros(sum(work.loaded_rows * work.loads for work in works))
     updates: dict[int, _Update] = {}
-    result, used = [], 0
+    result = []
     with threads_by_work() as suit:
         for index, (front, work) in enumerate(zip(symbolic.fronts, works, strict=True)):
             suit(work.flops)
-            shape = work.loaded_rows, work.loads
-            own = room[used : used + shape[0] * shape[1]].reshape(shape, order="F")
-            used += own.size
-            updates[index] = _eliminated(
-                index, entries, blocks, symbolic, updates, own, meter, carried
-            )
+            own = zeros_apart((work.loaded_rows, work.loads))
+            children = [(symbolic.fronts[child], updates.pop(child)) for child in front.children]
+            enter = partial(entries.add_to, index, front, matrix.blocks)
+            updates[index] = _eliminated(front, edges[index], enter, children, own, meter, carried)
             if own.size:
                 result.append(LoadRows(3 * front.load_start, 3 * front.load_stop, own))
     return result
 
 
 def _eliminated(
-    index: int,
-    entries: EntriesByFront,
-    blocks: NDArray[np.float64],
-    symbolic: SymbolicFactor,
-    updates: dict[int, _Update],
+    front: Front,
+    edges: tuple[int, ...],
+    enter: Callable[[NDArray[np.float64], NDArray[np.float64]], None],
+    children: list[tuple[Front, _Update]],
     own: NDArray[np.float64],
     meter: Meter,
     carried: CarriedLoads | None,
 ) -> _Update:
-    """Eliminate a front; its rows of W are written to ``own``, zeros before."""
-    front = symbolic.fronts[index]
-    work = FrontWork.of(front)
-    pivots = np.zeros((work.pivots, work.pivots), order="F")
-    border = np.zeros((work.pivots, work.boundary), order="F")
-    schur = UpperTiles.zeros(work.boundary)
-    skipped = work.pivots - work.loaded_rows
-    passed = np.zeros((work.boundary, work.loads), order="F")
+    """Eliminate a front; its rows of W are written to ``own``, zeros before.
 
-    entries.add_to(index, front, blocks, pivots, border)
+    ``enter`` writes the matrix's entries to pivots and border. Of the children's updates nothing is
+    left.
+    """
+    work = FrontWork.of(front)
+    pivots = zeros_apart((work.pivots, work.pivots))
+    border = zeros_apart((work.pivots, work.boundary))
+    enter(pivots, border)
     stiffness = pivots.diagonal().copy()
-    loaded = (3 * front.loaded_pivots[:, None] + AXES).ravel()
-    own[loaded - skipped, np.arange(work.loads - len(loaded), work.loads)] = 1.0
-    for child in front.children:
-        below, update = symbolic.fronts[child], updates.pop(child)
-        runs = runs_between(
-            targets_of_child(below, front), work.pivots, update.schur.edges, schur.edges
+    schur = UpperTiles(work.boundary)
+    placed = [
+        (
+            update,
+            runs_between(
+                targets_of_child(child, front), work.pivots, update.schur.edges, schur.edges
+            ),
         )
-        extend_add(update.schur, runs, pivots, border, schur)
+        for child, update in children
+    ]
+    for update, _ in placed:
         meter.add(MOVE_WEIGHT * update.schur.size)
-        if not below.load_count:
-            # Without loads from below, W may omit the pivots before the first loaded one.
-            continue
-        first = 3 * (below.load_start - front.load_start)
-        columns = slice(first, first + update.loads.shape[1])
-        for run in runs:
-            target = own if run.parent_tile < 0 else passed
-            part = update.loads[run.below]
-            target[run.onward, columns] = part
-            meter.add(MOVE_WEIGHT * part.size)
+    extend_add([(update.schur, runs) for update, runs in placed], pivots, border, schur)
     meter.add(FRONT_WEIGHT)
 
     factor, breakdown = dpotrf(pivots, lower=False, clean=False, overwrite_a=True)
+    del pivots
     refuse_loose(breakdown, factor.diagonal() ** 2, stiffness)
     meter.add(CHOLESKY_WEIGHT * work.cholesky_flops)
     _solve_transposed(factor, border, meter)
     schur.subtract_gram(border, meter.add)
     if carried is not None:
         carried.eliminate(front, factor, border)
+    skipped = work.pivots - work.loaded_rows
     if skipped:
         factor = np.asfortranarray(factor[skipped:, skipped:])
         border = np.asfortranarray(border[skipped:])
-    _solve_transposed(factor, own, meter)
+    loaded = (3 * front.loaded_pivots[:, None] + AXES).ravel()
+    own[loaded - skipped, np.arange(work.loads - len(loaded), work.loads)] = 1.0
+    loads = []
+    panels = [(update.loads, runs) for update, runs in placed]
+    for panel in arriving(front, edges, panels, own, work.boundary):
+        moved = own[:, panel.start - edges[0] : panel.stop - edges[0]]
+        _solve_transposed(factor, moved, meter)
+        _subtract_product(border, moved, panel.rows, meter)
+        meter.add(MOVE_WEIGHT * panel.rows.size)
+        if work.boundary:
+            loads.append(panel)
     if carried is not None:
         carried.meet(front, own)
-    _subtract_product(border, own, passed, meter)
-    return _Update(schur, passed)
-
-
-def targets_of_child(child: Front, parent: Front) -> NDArray[np.int64]:
-    """Parent's freedom, pivots first, of each freedom of the child's boundary."""
-    nodes = np.where(
-        child.boundary < parent.stop,
-        child.boundary - parent.start,
-        parent.pivot_count + np.searchsorted(parent.boundary, child.boundary),
-    )
-    return (3 * nodes[:, None] + AXES).ravel()
+    return _Update(schur, loads)
 
 
 def _solve_transposed(
@@ -200,7 +191,8 @@ def _short_calls(columns: int, flops_per_column: int) -> list[slice]:
 class EntriesByFront:
     """Places of a block matrix's upper half in the fronts.
 
-    ``rows`` and ``columns`` (m,) of the blocks, both halves of the matrix.
+    ``rows`` and ``columns`` (m,) of the blocks; of those below the diagonal in order of elimination
+    no use is made.
     """
 
     def __init__(
@@ -213,10 +205,6 @@ class EntriesByFront:
         stops = [0] + [front.stop for front in symbolic.fronts]
         self._bounds = np.searchsorted(self._rows, stops)
 
-    def in_order(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Blocks of the upper half, sorted for :meth:`add_to`."""
-        return blocks[self._upper]
-
     def add_to(
         self,
         index: int,
@@ -225,9 +213,9 @@ class EntriesByFront:
         pivots: NDArray[np.float64],
         border: NDArray[np.float64],
     ) -> None:
-        """Write the entries of front ``index`` of sorted ``blocks`` into empty arrays."""
+        """Write the entries of front ``index`` of the ``blocks`` (m, 3, 3) into empty arrays."""
         span = slice(*self._bounds[index : index + 2])
-        rows, columns, blocks = self._rows[span], self._columns[span], blocks[span]
+        rows, columns, blocks = self._rows[span], self._columns[span], blocks[self._upper[span]]
         inside = columns < front.stop
         for chosen, target, places in (
             (inside, pivots, columns - front.start),

@@ -15,10 +15,11 @@ from ...stiffness.held_pins import free_or_pinned
 from ..free_body.hold import held
 from ..free_body.inertia import RigidMotions
 from ..ordering.dissection import dissect
+from ..ordering.postorder import with_least_held
 from ..ordering.symbolic import SymbolicFactor, analyse
 from .block_matrix import BlockMatrix, free_blocks
 from .inverse import inverse_bytes, inverse_weight
-from .work import FrontWork, elimination_peak_bytes
+from .work import FrontWork, elimination_peak_bytes, memory_by_front
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class EliminationPlan:
     Attributes
     ----------
     free_surface : int64 (n,), the nodes whose compliance is wanted, ascending.
-    matrix : the stiffness between free nodes.
+    matrix : the stiffness between free nodes, the upper half in order of elimination.
     symbolic : fronts and order; nodes are counted among the free ones.
     ranks : int64 (n,), for each loaded node in order of elimination, its place in free_surface.
     table_itemsize : bytes of a number of the resulting table; 0 for none.
@@ -67,13 +68,17 @@ class EliminationPlan:
     def peak_bytes(self) -> int:
         """Peak bytes allocated by the numeric steps, the plan's matrix included.
 
-        A process grows by up to a third more, measured: freed memory is not all returned at once.
+        A process grows by a little more, measured: memory of small arrays is not all returned.
         """
-        peak, factor = elimination_peak_bytes(self.symbolic.fronts)
+        fronts = self.symbolic.fronts
+        peak, factor = elimination_peak_bytes(fronts, memory_by_front(fronts))
         table = inverse_bytes(len(self.ranks), self.table_itemsize)
-        # The elimination makes a sorted copy of the matrix's upper half.
-        sorted_half = self.matrix.nbytes // 2
-        return self.matrix.nbytes + max(sorted_half + peak, factor + table)
+        return self.matrix.nbytes + max(self.matrix.index_bytes + peak, factor + table)
+
+    @cached_property
+    def factor_bytes(self) -> int:
+        """Bytes of W."""
+        return sum(work.result_bytes for work in self.works)
 
 
 def plan_surface_inverse(
@@ -126,6 +131,15 @@ def _planned(
     edges = matrix.edges
     dissection = dissect(edges, mesh.nodes[free], loaded, progress=progress)
     symbolic = analyse(dissection, edges, loaded)
+    memory = memory_by_front(symbolic.fronts)
+    dissection = with_least_held(
+        dissection,
+        [front.needed for front in memory],
+        [front.left for front in memory],
+        [front.kept for front in memory],
+    )
+    symbolic = analyse(dissection, edges, loaded)
+    matrix = matrix.upper_half(symbolic.place)
     progress(1.0)
     ranks = np.searchsorted(free_surface, free[symbolic.loaded])
     motions = RigidMotions.of(mesh) if is_free else None

@@ -7,43 +7,59 @@ is short.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.blas import dgemm, dsyrk
 
+from ...machine.available_memory import zeros_apart
+
 # Rows and columns of a tile, enough for products at full speed.
 TILE = 512
 
 
-@dataclass(frozen=True, eq=False)
 class UpperTiles:
     """Symmetric (m, m) matrix, given by the entries on and above the diagonal.
+
+    Its columns are made and given up one block after another, so that of two matrices of which one
+    goes over into the other never both are held in full.
+
+    Parameters
+    ----------
+    size, tile : m, and rows and columns of a tile at most.
 
     Attributes
     ----------
     edges : start of each block of rows or columns, and m.
     tiles : ``tiles[k][i]`` for i up to k holds rows of block i and columns of block k. Diagonal
-        tiles are square, with anything finite below their diagonal.
+        tiles are square, with anything finite below their diagonal. Columns that are not made yet
+        are missing at the end; of those given up nothing is left.
     """
 
-    edges: tuple[int, ...]
-    tiles: tuple[tuple[NDArray[np.float64], ...], ...]
+    def __init__(self, size: int, tile: int = TILE) -> None:
+        self.edges = tile_edges(size, tile)
+        self.tiles: list[list[NDArray[np.float64]]] = []
+
+    def add_column(self) -> None:
+        """Make the next block of columns, zeros."""
+        widths = np.diff(self.edges).tolist()
+        column = len(self.tiles)
+        self.tiles.append(
+            [zeros_apart((height, widths[column])) for height in widths[: column + 1]]
+        )
+
+    def give_up(self, column: int) -> None:
+        """Free the tiles of a block of columns."""
+        self.tiles[column] = []
 
     @classmethod
     def zeros(cls, size: int, tile: int = TILE) -> UpperTiles:
-        """Zero matrix, (size, size)."""
-        edges = tile_edges(size, tile)
-        widths = np.diff(edges)
-        return cls(
-            edges,
-            tuple(
-                tuple(np.zeros((height, width), order="F") for height in widths[: column + 1])
-                for column, width in enumerate(widths)
-            ),
-        )
+        """Zero matrix, (size, size), with all its columns."""
+        zeros = cls(size, tile)
+        for _ in pairwise(zeros.edges):
+            zeros.add_column()
+        return zeros
 
     @property
     def size(self) -> int:

@@ -6,7 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
 from ..ordering.symbolic import Front
+from .extend_add import targets_of_child
+from .passed_loads import panel_edges
 from .upper_tiles import tile_edges
 
 # Time relative to an operation in a large matrix product, measured, of one operation in triangular
@@ -84,11 +88,14 @@ class FrontWork:
 
     @property
     def factor_bytes(self) -> int:
-        """Bytes held while the front is eliminated."""
+        """Bytes of pivots and border, held while the front is eliminated."""
+        return REAL_BYTES * self.pivots * (self.pivots + self.boundary)
+
+    @property
+    def trailing_bytes(self) -> int:
+        """Bytes of what of these loads reach, taken apart where they do not reach all."""
         trailing = self.loaded_rows if self.loaded_rows < self.pivots else 0
-        return REAL_BYTES * (
-            self.pivots * (self.pivots + self.boundary) + trailing * (trailing + self.boundary)
-        )
+        return REAL_BYTES * trailing * (trailing + self.boundary)
 
     @property
     def update_bytes(self) -> int:
@@ -107,16 +114,94 @@ def upper_tiles_size(size: int) -> int:
     return sum(stop * (stop - start) for start, stop in pairwise(edges))
 
 
-def elimination_peak_bytes(fronts: tuple[Front, ...]) -> tuple[int, int]:
-    """Peak bytes while fronts are eliminated, and the bytes of W at the end."""
-    works = [FrontWork.of(front) for front in fronts]
-    # W is allocated from the beginning.
-    factor = held = peak = sum(work.result_bytes for work in works)
-    for front, work in zip(fronts, works, strict=True):
-        held += work.factor_bytes + work.update_bytes
+@dataclass(frozen=True)
+class FrontMemory:
+    """Bytes that a front holds.
+
+    Attributes
+    ----------
+    needed : at most while it is eliminated, its children's updates and its rows of W included.
+    left : of its update, until the parent has taken it.
+    kept : of its rows of W.
+    """
+
+    needed: int
+    left: int
+    kept: int
+
+
+def memory_by_front(fronts: tuple[Front, ...]) -> list[FrontMemory]:
+    """Memory of each front's elimination, as :mod:`.numeric` allocates it."""
+    works, edges = [FrontWork.of(front) for front in fronts], panel_edges(fronts)
+    return [
+        FrontMemory(
+            works[index].result_bytes
+            + max(_while_added(front, fronts, works), _while_passed(index, fronts, works, edges)),
+            works[index].update_bytes,
+            works[index].result_bytes,
+        )
+        for index, front in enumerate(fronts)
+    ]
+
+
+def _while_added(front: Front, fronts: tuple[Front, ...], works: list[FrontWork]) -> int:
+    """Bytes at most while children's Schur complements become the front's, column by column."""
+    own = FrontWork.of(front)
+    held = own.factor_bytes + sum(works[child].update_bytes for child in front.children)
+    edges, peak = tile_edges(own.boundary), held
+    given_up = np.zeros(len(edges), dtype=np.int64)
+    for child in front.children:
+        below = tile_edges(works[child].boundary)
+        if len(below) > 1:
+            last = targets_of_child(fronts[child], front)[np.array(below[1:]) - 1]
+            # Place 0 are the pivots, which come before all tiles.
+            tile = np.searchsorted(edges, last - own.pivots, side="right")
+            np.add.at(given_up, tile, _column_bytes(below))
+    held -= int(given_up[0])
+    for added, removed in zip(_column_bytes(edges), given_up[1:].tolist(), strict=True):
+        held += added
         peak = max(peak, held)
-        held -= work.factor_bytes + sum(works[child].update_bytes for child in front.children)
-    return peak, factor
+        held -= removed
+    return peak
+
+
+def _while_passed(
+    index: int,
+    fronts: tuple[Front, ...],
+    works: list[FrontWork],
+    edges: list[tuple[int, ...]],
+) -> int:
+    """Bytes at most while children's loads become the front's, panel by panel."""
+    front, work = fronts[index], works[index]
+    held = work.factor_bytes + REAL_BYTES * upper_tiles_size(work.boundary)
+    waiting = []
+    for child in front.children:
+        height = REAL_BYTES * works[child].boundary
+        waiting += [(start, height * (stop - start)) for start, stop in pairwise(edges[child])]
+    held += sum(size for _, size in waiting)
+    peak = held + work.trailing_bytes
+    if work.trailing_bytes:
+        held += work.trailing_bytes - work.factor_bytes
+    for start, stop in pairwise(edges[index]):
+        held += REAL_BYTES * work.boundary * (stop - start)
+        peak = max(peak, held)
+        held -= sum(size for first, size in waiting if start <= first < stop)
+    return peak
+
+
+def _column_bytes(edges: tuple[int, ...]) -> list[int]:
+    """Bytes of each block of columns of tiles."""
+    return [REAL_BYTES * stop * (stop - start) for start, stop in pairwise(edges)]
+
+
+def elimination_peak_bytes(fronts: tuple[Front, ...], memory: list[FrontMemory]) -> tuple[int, int]:
+    """Peak bytes while fronts are eliminated, and the bytes of W at the end."""
+    held = peak = 0
+    for front, own in zip(fronts, memory, strict=True):
+        held -= sum(memory[child].left for child in front.children)
+        peak = max(peak, held + own.needed)
+        held += own.left + own.kept
+    return peak, sum(own.kept for own in memory)
 
 
 class Meter:

@@ -1,9 +1,10 @@
 """Memory that can be had, also within a container."""
 
+import numpy as np
 import psutil
 import pytest
 
-from palpate.core.machine.available_memory import available_memory
+from palpate.core.machine.available_memory import available_memory, zeros_apart
 
 
 def group(root, files):
@@ -45,3 +46,15 @@ def test_a_container_without_a_limit_has_what_the_system_has(tmp_path):
 def test_a_container_that_is_full_has_nothing(tmp_path):
     files = {"memory.max": "100\n", "memory.current": "4000000\n", "memory.stat": ""}
     assert available_memory(group(tmp_path, files)) == 0
+
+
+@pytest.mark.parametrize("shape", [(0, 3), (4, 5), (700, 900), (1, 300_000)])
+def test_zeros_apart_are_zeros_to_write_to_by_columns(shape):
+    zeros = zeros_apart(shape)
+    assert zeros.shape == shape
+    assert zeros.dtype == np.float64
+    assert zeros.flags.f_contiguous
+    assert zeros.flags.writeable
+    assert not zeros.any()
+    zeros[-1:, -1] = 2.0
+    assert zeros.sum() == (2.0 if zeros.size else 0.0)

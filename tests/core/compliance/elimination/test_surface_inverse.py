@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from awkward_bodies import block_of_cubes, inverse_at, joined, largest_column_error, oriented
 
-from palpate.core.compliance.elimination import inverse
+from palpate.core.compliance.elimination import inverse, passed_loads
 from palpate.core.compliance.elimination.surface_columns import factor_for_columns
 from palpate.core.compliance.elimination.upper_tiles import UpperTiles
 from palpate.core.compliance.elimination.work import Meter
@@ -81,7 +81,8 @@ def held_body(request):
 def small_parts(monkeypatch):
     """Fronts and tiles so small that even a small body has many of each."""
     monkeypatch.setattr(dissect, "__defaults__", (8, unwatched))
-    monkeypatch.setattr(UpperTiles.zeros.__func__, "__defaults__", (20,))
+    monkeypatch.setattr(UpperTiles.__init__, "__defaults__", (20,))
+    monkeypatch.setattr(passed_loads, "PANEL", 30)
     monkeypatch.setattr(inverse, "TILE", 50)
     monkeypatch.setattr(inverse, "ROWS_RENUMBERED", 11)
 

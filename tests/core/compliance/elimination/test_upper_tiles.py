@@ -23,12 +23,13 @@ def test_extend_add_is_addition_by_node_numbers(rng, tile):
     child.subtract_gram(np.asfortranarray(rng.normal(size=(size, size))), lambda _: None)
     pivots = np.zeros((pivot_count, pivot_count), order="F")
     border = np.zeros((pivot_count, boundary), order="F")
-    schur = UpperTiles.zeros(boundary, tile)
+    schur = UpperTiles(boundary, tile)
     runs = runs_between(targets, pivot_count, child.edges, schur.edges)
-    extend_add(child, runs, pivots, border, schur)
-
     expected = np.zeros((pivot_count + boundary,) * 2)
     expected[np.ix_(targets, targets)] = child.dense()
+    extend_add([(child, runs)], pivots, border, schur)
+
+    assert not any(child.tiles)
     np.testing.assert_array_equal(np.triu(pivots), np.triu(expected[:pivot_count, :pivot_count]))
     np.testing.assert_array_equal(border, expected[:pivot_count, pivot_count:])
     np.testing.assert_array_equal(schur.dense(), expected[pivot_count:, pivot_count:])
@@ -45,3 +46,27 @@ def test_runs_are_as_long_as_they_can_be():
 def test_a_front_without_boundary_has_no_runs():
     nothing = np.zeros(0, dtype=np.int64)
     assert runs_between(nothing, 5, (0,), (0, 3)) == []
+
+
+def test_children_are_added_together_as_one_after_the_other(rng):
+    tile, boundary, pivot_count = 7, 30, 6
+    children, targets = [], []
+    for size in (18, 25, 0):
+        child = UpperTiles.zeros(size, tile)
+        child.subtract_gram(np.asfortranarray(rng.normal(size=(3, size))), lambda _: None)
+        children.append(child)
+        targets.append(np.sort(rng.choice(pivot_count + boundary, size, replace=False)))
+    expected = np.zeros((pivot_count + boundary,) * 2)
+    for child, places in zip(children, targets, strict=True):
+        expected[np.ix_(places, places)] += child.dense()
+    pivots = np.zeros((pivot_count, pivot_count), order="F")
+    border = np.zeros((pivot_count, boundary), order="F")
+    schur = UpperTiles(boundary, tile)
+    runs = [
+        runs_between(places, pivot_count, child.edges, schur.edges)
+        for child, places in zip(children, targets, strict=True)
+    ]
+    extend_add(list(zip(children, runs, strict=True)), pivots, border, schur)
+    np.testing.assert_array_equal(np.triu(pivots), np.triu(expected[:pivot_count, :pivot_count]))
+    np.testing.assert_array_equal(border, expected[:pivot_count, pivot_count:])
+    np.testing.assert_array_equal(schur.dense(), expected[pivot_count:, pivot_count:])
