@@ -82,14 +82,41 @@ def write(
 def play(thing: bpy.types.Object, target: Path, path: str, *, attributes: bool) -> None:
     """Let the object's modifier play a file, before all that deforms the mesh further; with the
     attributes of its vertices, or their places alone.
+
+    Raises
+    ------
+    PalpateError
+        Blender does not open it; what the object played before stays.
     """
     before = set(bpy.data.cache_files)
     bpy.ops.cachefile.open(filepath=str(target), relative_path=False)
     opened = next(one for one in bpy.data.cache_files if one not in before)
+    if not _has(opened, path):
+        bpy.data.batch_remove([opened])
+        raise PalpateError(
+            "{path}: Blender wrote this file and does not open it there; choose a Body Folder "
+            "without letters beyond a to z, or keep the animation as a Mesh Cache",
+            path=target,
+        )
     opened.filepath = mesh_cache.shortest(target)
     modifier = mesh_cache.modifier_of(thing, "MESH_SEQUENCE_CACHE")
     modifier.cache_file, modifier.object_path = opened, path
     modifier.read_data = {"VERT", "ATTRIBUTES"} if attributes else {"VERT"}
+
+
+def _has(opened: bpy.types.CacheFile, path: str) -> bool:
+    """Whether an opened file has a surface: it is read as somebody plays it."""
+    mesh = bpy.data.meshes.new(MESH)
+    reader = bpy.data.objects.new(TWIN, mesh)
+    try:
+        bpy.context.scene.collection.objects.link(reader)
+        modifier = reader.modifiers.new(TWIN, "MESH_SEQUENCE_CACHE")
+        modifier.cache_file, modifier.object_path = opened, path
+        bpy.context.view_layer.update()
+        return any(one.path == path for one in opened.object_paths)
+    finally:
+        bpy.data.objects.remove(reader)
+        bpy.data.meshes.remove(mesh)
 
 
 def _close(thing: bpy.types.Object) -> None:

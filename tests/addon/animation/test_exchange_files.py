@@ -5,10 +5,20 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from soft_scene import empty, error_of, key_names, mesh_state, part, seen_places, soft_cube
+from soft_scene import (
+    empty,
+    error_of,
+    key_names,
+    mesh_state,
+    opens_usd,
+    part,
+    seen_places,
+    soft_cube,
+)
 from without_palpate import without_palpate
 
 KINDS = {"ALEMBIC": ".abc", "USD": ".usdc"}
+OF_EACH = ["ALEMBIC", pytest.param("USD", marks=opens_usd)]
 
 
 @pytest.fixture
@@ -51,7 +61,7 @@ def around(thing):
     )
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", OF_EACH)
 def test_a_file_plays_every_frame_also_without_palpate(tapped, kind, tmp_path):
     scene, wanted = bpy.context.scene, of_cache(tapped)
     scene.frame_set(4)
@@ -69,7 +79,7 @@ def test_a_file_plays_every_frame_also_without_palpate(tapped, kind, tmp_path):
     np.testing.assert_allclose(alone, wanted[6], rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", OF_EACH)
 def test_a_second_bake_takes_the_place_of_the_first(tapped, kind):
     for _ in range(2):
         assert bpy.ops.palpate.press_frames(keep=kind) == {"FINISHED"}
@@ -83,7 +93,24 @@ def test_a_second_bake_takes_the_place_of_the_first(tapped, kind):
     assert [one.type for one in tapped.modifiers] == ["MESH_CACHE"]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+def test_a_file_that_blender_does_not_open_is_told(tapped, monkeypatch):
+    wanted = of_cache(tapped)[6]
+    files = part("operators.animation.exchange_file")
+
+    def written(twin, scene, size, made, kind):
+        made.write_bytes(b"nonsense")
+
+    monkeypatch.setattr(files, "_export", written)
+    before = around(tapped)
+    message = error_of(bpy.ops.palpate.press_frames, keep="USD")
+    assert "-animation.usdc" in message
+    assert "Body Folder" in message
+    assert around(tapped) == before
+    assert not bpy.data.cache_files
+    np.testing.assert_array_equal(at(tapped, 6), wanted)
+
+
+@pytest.mark.parametrize("kind", OF_EACH)
 def test_a_coarser_file_goes_straight_between_its_frames(tapped, kind):
     wanted = of_cache(tapped)
     assert bpy.ops.palpate.press_frames(keep=kind, step=3) == {"FINISHED"}

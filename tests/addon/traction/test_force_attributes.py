@@ -14,6 +14,7 @@ from soft_scene import (
     empty,
     layer_names,
     moved,
+    opens_usd,
     part,
     rest_places,
     seen_places,
@@ -189,6 +190,7 @@ def test_an_imprint_bears_nothing_once_it_is_let_go(fine):
     assert not shown(fine, "palpate_pressure").any()
 
 
+@opens_usd
 def test_a_baked_usd_file_plays_them_frame_by_frame(fine, tmp_path):
     guide, scene, table = empty(), bpy.context.scene, tmp_path / "forces.csv"
     for frame, height in ((1, 0.06), (3, 0.042), (5, 0.06)):
