@@ -59,10 +59,13 @@ class Supports:
         """Displacements (3 p,) of the drawn vertices, local units, none of which leads into a
         support: where that presses, the body gives way by more than its elements show.
         """
+        if not self.all:
+            return moved
         local = (drawn.rest + moved).reshape(-1, 3).astype(np.float64)
         metres = frame.metres_per_unit
         places = frame.world_from_body(frame.body_from_local(local)) * metres
-        found = places.copy()
+        # Coordinate by coordinate, as they are compared for each of perhaps sixteen supports.
+        found = np.array(places, order="F")
         for tool, pose in self.ways:
             if tool is not None:
                 _leave(found, tool, pose, drawn, frame)
@@ -82,7 +85,10 @@ def _leave(
 ) -> None:
     """Lead drawn vertices that are in a support out of it, but those that have come through it."""
     low, high = _bounds(tool, pose)
-    near = np.flatnonzero(((places > low) & (places < high)).all(axis=1))
+    is_near = np.ones(len(places), dtype=np.bool_)
+    for axis in range(3):
+        is_near &= (places[:, axis] > low[axis]) & (places[:, axis] < high[axis])
+    near = np.flatnonzero(is_near)
     if not len(near):
         return
     distances, normals = tool.distance(pose.to_tool(places[near]))
