@@ -43,7 +43,7 @@ LIGHTEST = 1e-3
 # Times as far as a linear body at most: beyond, it swings away from its tool instead of giving way.
 FARTHEST = 1.25
 # Bounds of what is believed.
-LEAST, MOST = 0.1, 5.0
+LEAST, MOST = 0.1, 30.0
 
 
 @dataclass(frozen=True)

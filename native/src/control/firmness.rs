@@ -14,7 +14,7 @@
 
 /// Bounds of what is felt.
 const LEAST: f64 = 0.1;
-const MOST: f64 = 5.0;
+const MOST: f64 = 30.0;
 /// Another firmness is there within about this time, s.
 const FADING: f64 = 0.05;
 /// What adds less than this adds nothing.

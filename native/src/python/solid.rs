@@ -127,7 +127,7 @@ impl Relaxation {
                 against: None,
             };
             let mut relaxing = locked(&self.inner);
-            let linear = linear.unwrap_or_else(|| relaxing.solid().linear(&dead));
+            let linear = linear.unwrap_or_else(|| relaxing.linear_under(&dead));
             relaxing.relax(&linear, &load, steps);
             relaxing.warped.clone()
         });

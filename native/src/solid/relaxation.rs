@@ -53,13 +53,6 @@ impl Solid {
             self.strained.springs.as_ref(),
         )
     }
-
-    /// The linear displacement under forces, in single precision: a place to begin steps from.
-    pub fn linear(&self, forces: &Nodal) -> Field {
-        let mut found = vec![[0.0; 3]; forces.len()];
-        (self.stiffness).solve_freedoms(forces, &mut self.stiffness.room(), &mut found);
-        found
-    }
 }
 
 /// How a search for rest ended.
@@ -121,6 +114,13 @@ impl Relaxation {
     /// The body.
     pub fn solid(&self) -> &Arc<Solid> {
         &self.solid
+    }
+
+    /// The linear displacement under forces, in single precision: a place to begin steps from.
+    pub fn linear_under(&mut self, forces: &Nodal) -> Field {
+        let mut found = vec![[0.0; 3]; forces.len()];
+        (self.solid.stiffness).solve_freedoms(forces, &mut self.stiffness, &mut found);
+        found
     }
 
     /// Warps [`Self::linear`].

@@ -11,8 +11,9 @@ from palpate.core.servo.session import drawn_loads, native_body, servo_on
 from palpate.core.servo.settings import Coupling, Settings
 
 MODULUS = 10_000.0
-# Of a point in the middle of the cube's top: 1 + s/4 + s^2/4 and 1 - s/3, s its depth over 4 mm.
-FIRMER, SOFTER = (0.25, 0.25), (-1 / 3, 0.0)
+# Of a point in the middle of the cube's top: 1 + s/4 + s^2/4 and 1 - s/3, s its depth over 4 mm;
+# and as of a thin part that is bent, 1 + 2 s + 4 s^2, up to 21.
+FIRMER, SOFTER, THIN = (0.25, 0.25), (-1 / 3, 0.0), (2.0, 4.0)
 DEEP = 2.0
 COUPLED = Coupling(800.0, 4.0, passivity_control=True)
 # Ticks until another firmness is there, and how nearly.
@@ -42,7 +43,7 @@ def linear_force(whole, depth):
     return fingers.follow(np.stack([down(depth)] * 3))[0][-1][0][2]
 
 
-@pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
+@pytest.mark.parametrize("firmness", [FIRMER, SOFTER, THIN])
 def test_the_force_is_that_much_firmer(whole, firmness):
     fingers = fingers_on(whole, down(-0.001), firmness)
     for depth in (0.0005, 0.002, 0.004, 0.012):
@@ -87,7 +88,7 @@ def test_it_begins_anew_with_every_touch(whole):
     np.testing.assert_allclose(first, linear_force(whole, 0.004), rtol=0.05)
 
 
-@pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
+@pytest.mark.parametrize("firmness", [FIRMER, SOFTER, THIN])
 @pytest.mark.parametrize("ticks", [40, 400])
 def test_in_and_out_gives_nothing(whole, firmness, ticks):
     """As fast as 0.2 m/s: forces of a tick are those of the last one's depth."""
@@ -107,6 +108,7 @@ def test_in_and_out_gives_nothing(whole, firmness, ticks):
     [
         pytest.param(FIRMER, None, None, id="point"),
         pytest.param(SOFTER, None, COUPLED, id="softer, point, motors"),
+        pytest.param(THIN, None, COUPLED, id="as of a thin part, point, motors"),
         *(
             pytest.param(*one, marks=pytest.mark.at_length)
             for one in (
@@ -116,6 +118,9 @@ def test_in_and_out_gives_nothing(whole, firmness, ticks):
                 (SOFTER, sphere(0.006), COUPLED),
                 (FIRMER, sphere(0.006), None),
                 (SOFTER, sphere(0.006), None),
+                (THIN, None, None),
+                (THIN, sphere(0.006), COUPLED),
+                (THIN, sphere(0.006), None),
             )
         ),
     ],

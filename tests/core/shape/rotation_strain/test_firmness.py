@@ -128,7 +128,7 @@ def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
 
 
 def test_it_is_bounded():
-    assert Firmness(100.0, 0.0, 1.0).at(1.0) == 5.0
+    assert Firmness(100.0, 0.0, 1.0).at(1.0) == 30.0
     assert Firmness(-100.0, 0.0, 1.0).at(1.0) == 0.1
 
 
