@@ -8,12 +8,16 @@ The truth is a contact of the law's solid with smoothed strains, by Newton's met
 
 - the force at 1 Pa, mm2, along the press; by how much the linear and the *real* one are off
   (:mod:`palpate.core.shape.felt`);
-- the largest error of the drawn surface at rest, as a share of the largest displacement.
+- the largest error of the drawn surface at rest, as a share of the largest displacement;
+- how many places of the surface press, three a triangle.
 
 Claimed: on the cube under a ball of 12 mm rubber's force agrees with another program's; the real
 force is within 5 % to half a radius or a fifth of the part's thickness, and within 10 % to a radius
-or two fifths, but for the presses in :data:`BEYOND`; the drawn surface is within 3 % of the largest
-displacement, but for those in :data:`DRAWN_BEYOND`. The exit status tells whether that holds.
+or two fifths; the drawn surface is within 3 % of the largest displacement. Where a tool presses
+fewer than 16 places, the truth of these tetrahedra is itself as far from that of finer ones
+(``benchmarks/contact/finer_rubber.py``), and a point that goes in by two fifths crushes what it
+presses: then the force is within 10 %, and the surface within 30 %. Where the truth is an
+equilibrium that is not stable, only the force is claimed. The exit status tells whether that holds.
 """
 
 from __future__ import annotations
@@ -24,7 +28,6 @@ from collections.abc import Iterator
 from itertools import product
 
 from palpate.benchmarks.measuring.shape.deep_press import (
-    BALL_DEPTHS,
     BODIES,
     LAWS,
     Bench,
@@ -42,24 +45,8 @@ ISSUED = {1 / 12: 5.56, 1 / 3: 43.9, 1 / 2: 78.9, 3 / 4: 140.6, 1.0: 208.4, 4 / 
 AGREEMENT = 0.11
 # The real force: to half a radius and a fifth of the thickness, and beyond.
 NEAR, FAR = 0.05, 0.10
-# Their triangles are as wide as their balls' contacts.
-COARSE = ("mouse-1.7k", "drumstick")
-# Farther off: a ball hardly wider than a triangle.
-BEYOND = ("mouse-1.7k, ball 2, 0.5",)
-# The drawn surface, and where it is farther off: where few places press, and where points crush.
-DRAWN = 0.03
-DRAWN_BEYOND = (
-    "cube, ball 2, 0.5",
-    "cube, wall, 0.4",
-    *(f"{body}, ball {n}, {depth:g}" for body in COARSE for n in (1, 2) for depth in BALL_DEPTHS),
-    *(f"{body}, point {n}, 0.4" for body in COARSE for n in (1, 2)),
-    "cube, foam, point 2, 0.4",
-    "cube, foam, wall, 0.4",
-    "bar, foam, ball 2, 0.5",
-    "bar, fibres, ball 2, 0.5",
-    "cube, natural-rubber, ball 2, 0.5",
-    "cube, natural-rubber, wall, 0.4",
-)
+# The drawn surface; and where few places press, or points crush.
+DRAWN, DRAWN_COARSELY, MANY_PLACES = 0.03, 0.30, 16.0
 
 
 def issued_rows(bench: Bench) -> Iterator[tuple[Row, float]]:
@@ -75,21 +62,25 @@ def written(row: Row) -> str:
     drawn = "".join(f"{100 * error:9.1f}" for error in row.drawn)
     return (
         f"{row.name:<26}{row.depth:7.3f}{row.share:7.3f}{row.true:10.2f}"
-        f"{100 * (row.linear - 1):+9.1f}{100 * (row.real - 1):+9.1f}{drawn}"
+        f"{100 * (row.linear - 1):+9.1f}{100 * (row.real - 1):+9.1f}{drawn}{row.places:8.0f}"
         f"{'' if row.is_whole else '   no rest so deep'}"
+        f"{'' if row.is_stable else '   the truth is not stable'}"
     )
 
 
 def holds(row: Row) -> bool:
     """Whether the force and the drawn surface are as near as promised; says where they are not."""
     press = f"{row.name}, {row.depth:.3g}"
-    most = NEAR if row.is_near else FAR
-    is_felt = press in BEYOND or abs(row.real - 1.0) <= most
-    is_drawn = press in DRAWN_BEYOND or row.drawn[1] <= DRAWN
+    is_point = "point" in row.name
+    is_told = row.is_near if is_point else row.places >= MANY_PLACES
+    most = NEAR if row.is_near and is_told else FAR
+    most_drawn = DRAWN if is_told else DRAWN_COARSELY
+    is_felt = abs(row.real - 1.0) <= most
+    is_drawn = not row.is_stable or row.drawn[1] <= most_drawn
     if not is_felt:
         print(f"CLAIM BROKEN: {press}: the real force is not within {most:.0%}")
     if not is_drawn:
-        print(f"CLAIM BROKEN: {press}: the drawn surface is not within {DRAWN:.0%}")
+        print(f"CLAIM BROKEN: {press}: the drawn surface is not within {most_drawn:.0%}")
     return is_felt and is_drawn
 
 
@@ -104,10 +95,8 @@ def main() -> int:
     )
     parser.add_argument("--places", type=int, default=2, metavar="N", help="places of each body")
     options = parser.parse_args()
-    heads = ["linear", "real", "drawn", "real"]
-    print(
-        f"{'':<26}{'depth':>7}{'share':>7}{'truth':>10}" + "".join(f"{head:>9}" for head in heads)
-    )
+    heads = "".join(f"{head:>9}" for head in ("linear", "real", "drawn", "real"))
+    print(f"{'':<26}{'depth':>7}{'share':>7}{'truth':>10}{heads}{'places':>8}")
     kept = []
     for law, name in product(options.laws, options.bodies):
         bench = Bench.of(name, law)

@@ -16,13 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from palpate.benchmarks.measuring.bodies import tets_of
-from palpate.benchmarks.measuring.shape.pressed_solid import (
-    Ball,
-    Pressed,
-    PressedSolid,
-    Presser,
-    Wall,
-)
+from palpate.benchmarks.measuring.shape.pressed_solid import Pressed, PressedSolid
+from palpate.benchmarks.measuring.shape.pressers import Ball, Presser, Wall
 from palpate.benchmarks.measuring.standing import standing_body
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.place import Place, nearest_place
@@ -49,6 +44,7 @@ BODIES = ("cube", "mouse-1.7k", "drumstick", "hare", "bar")
 WALLED = ("cube", "mouse-1.7k")
 BALL_EDGES = 2.4
 BALL_DEPTHS, WALL_DEPTHS, POINT_DEPTHS = (0.5, 0.75, 1.0), (0.1, 0.2, 0.4), (0.1, 0.2, 0.4)
+PLACES_SEED = 1999
 DEEPEST = 0.4  # of the part's thickness, what a ball goes in at most
 
 
@@ -75,6 +71,8 @@ class Row:
     name : of the press.
     depth, share : over the radius of a ball, of the part's thickness.
     is_near : by half a radius, or a fifth of the part, at most.
+    places : of the surface's triangles, three each, that press; one of a point.
+    is_stable : whether the truth is a rest, and no equilibrium that the body leaves.
     true : the force at 1 Pa, mm2, along the press.
     linear, real : forces over it.
     is_whole : whether the body's own rest was found as deep as that.
@@ -85,6 +83,8 @@ class Row:
     depth: float
     share: float
     is_near: bool
+    places: float
+    is_stable: bool
     true: float
     linear: float
     real: float
@@ -177,6 +177,8 @@ class Bench:
             f"{self.name}, {name}",
             *depths,
             near,
+            true.places,
+            true.is_stable,
             1e6 * force,
             linear / force,
             pressed / force,
@@ -203,7 +205,7 @@ def places_on(body: SoftBody, count: int, rng: np.random.Generator) -> Iterator[
 
 def rows_of(bench: Bench, count: int) -> Iterator[Row]:
     """All presses of one body; the same in every run."""
-    rng = np.random.default_rng(1999)
+    rng = np.random.default_rng(PLACES_SEED)
     for number, place in enumerate(places_on(bench.body, count, rng), start=1):
         yield from bench.at_place(place, number)
     if bench.is_walled:

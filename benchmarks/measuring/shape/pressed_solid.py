@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from palpate.benchmarks.measuring.shape.pressers import Presser
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.compliance.elimination.cholesky import CholeskyFactor, NotPositiveDefiniteError
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -35,40 +36,6 @@ SUFFICIENT_DECREASE = 1e-4
 SHORTEST_PART = 1e-4
 
 
-class Presser(Protocol):
-    """What is pressed in."""
-
-    def depths(self, places: Array) -> tuple[Array, Array]:
-        """How deep places (p, 3) are in it, (p,), and its outward normals there, (p, 3)."""
-        ...
-
-
-@dataclass(frozen=True, eq=False)
-class Ball:
-    """A ball about ``middle`` (3,)."""
-
-    middle: Array
-    radius: float
-
-    def depths(self, places: Array) -> tuple[Array, Array]:
-        """See :class:`Presser`."""
-        away = places - self.middle
-        distance = np.linalg.norm(away, axis=1)
-        return self.radius - distance, away / distance[:, None]
-
-
-@dataclass(frozen=True, eq=False)
-class Wall:
-    """All beyond a plane through ``place`` (3,), on the side of ``outward`` (3,), unit."""
-
-    place: Array
-    outward: Array
-
-    def depths(self, places: Array) -> tuple[Array, Array]:
-        """See :class:`Presser`."""
-        return (places - self.place) @ self.outward, np.tile(-self.outward, (len(places), 1))
-
-
 @dataclass(frozen=True, eq=False)
 class Pushes:
     """What presses: energy in joule, forces (p, 3) on the places, and what resists, (p, 3, 3)."""
@@ -86,11 +53,15 @@ class Pressed:
     ----------
     displacements : (f, 3) of the free nodes, metres.
     nodal_forces : (f, 3) on them.
+    places : how many places press; fewer where few carry most of it.
+    is_stable : whether the energy is least there; else it is an equilibrium that a body leaves.
     force : (3,) on the body.
     """
 
     displacements: Array
     nodal_forces: Array
+    places: float
+    is_stable: bool
 
     @property
     def force(self) -> Array:
@@ -122,9 +93,8 @@ class PressedSolid:
         """
         facing = self._normals @ outward > 0.0
         triangles, shares = self._triangles[facing], np.repeat(self._areas[facing] / 3.0, 3)
-        spread = _Spread(
-            np.repeat(triangles, 3, axis=0), np.tile(PLACES, (len(triangles), 1)), self.solid
-        )
+        alphas = np.tile(PLACES, (len(triangles), 1))
+        spread = _Spread(np.repeat(triangles, 3, axis=0), alphas, self.solid)
         firm = [penalty / self.edge * shares for penalty in PENALTIES]
         contacts = (_Penalty(tool, penalty) for tool in tools for penalty in firm)
         yield from islice(self._followed(spread, contacts), 1, None, len(firm))
@@ -166,11 +136,14 @@ class PressedSolid:
         moved = np.zeros_like(self.solid.positions)
         for contact in contacts:
             moved = self._at_rest(spread, contact, moved)
-            yield Pressed(moved, spread.on_nodes(contact.pushes(spread.places(moved)).forces))
+            pushes = contact.pushes(spread.places(moved))
+            sizes = np.linalg.norm(pushes.forces, axis=1)
+            places = float(sizes.sum() ** 2 / max((sizes * sizes).sum(), 1e-300))
+            is_stable = self._is_stable(spread, pushes, moved)
+            yield Pressed(moved, spread.on_nodes(pushes.forces), places, is_stable)
 
-    def _at_rest(self, spread: _Spread, contact: _Contact, start: Array) -> Array:
-        """Displacements (f, 3) of least energy, by Newton's method from ``start``."""
-        moved = start
+    def _at_rest(self, spread: _Spread, contact: _Contact, moved: Array) -> Array:
+        """Displacements (f, 3) of least energy, by Newton's method from ``moved``."""
         for _ in range(MOST_ITERATIONS):
             pushes = contact.pushes(spread.places(moved))
             left = spread.on_nodes(pushes.forces) - self.solid.forces(moved)
@@ -194,6 +167,14 @@ class PressedSolid:
         except NotPositiveDefiniteError:
             blocks = self.solid.solid.tangent_blocks(moved, convex=True) + added
             return self.solid.elimination.factor(blocks)
+
+    def _is_stable(self, spread: _Spread, pushes: Pushes, moved: Array) -> bool:
+        blocks = self.solid.solid.tangent_blocks(moved) + spread.blocks(pushes.stiffness)
+        try:
+            self.solid.elimination.factor(blocks)
+        except NotPositiveDefiniteError:
+            return False
+        return True
 
     def _searched(
         self, spread: _Spread, contact: _Contact, moved: Array, way: Array, slope: float
@@ -270,11 +251,8 @@ class _Spread:
 
     def places(self, moved: Array) -> Array:
         """Where they are, (p, 3), at displacements (f, 3)."""
-        return self._mean(self.solid.positions[self.corners] + moved[self.corners])
-
-    def _mean(self, of_corners: Array) -> Array:
-        mean: Array = np.einsum("pa,pai->pi", self.alphas, of_corners)
-        return mean
+        corners = self.solid.positions[self.corners] + moved[self.corners]
+        return np.asarray(np.einsum("pa,pai->pi", self.alphas, corners))
 
     def on_nodes(self, forces: Array) -> Array:
         """Forces (p, 3) as forces on the nodes, (f, 3)."""
