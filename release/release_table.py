@@ -64,12 +64,18 @@ def verdict(word: str, cell: Cell, report: str) -> str:
 
 
 def closing_line(report: str) -> str:
-    """Return how a report ends; of cargo, which closes each of its programs, the sum of all."""
+    """Return how a report ends, what Blender says after its tests left out; of cargo, which closes
+    each of its programs, the sum of all.
+    """
     of_cargo = re.findall(r"^test result: \w+\. (\d+) passed; (\d+) failed", report, re.MULTILINE)
     if of_cargo:
         passed, failed = (sum(map(int, numbers)) for numbers in zip(*of_cargo, strict=True))
         return f"{passed} passed, {failed} failed"
-    return next((line for line in reversed(report.splitlines()) if line.strip()), "")
+    lines = [line for line in report.splitlines() if line.strip()]
+    of_pytest = [
+        line for line in lines if re.match(r"\d+ (passed|failed|error).* in [\d.]+s", line)
+    ]
+    return (of_pytest or lines or [""])[-1]
 
 
 def rows(said: Mapping[str, list[str]]) -> list[tuple[str, ...]]:

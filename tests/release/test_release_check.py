@@ -104,6 +104,8 @@ def test_of_cargo_all_programs_are_told():
     report = line.format("ok", 85, 0) + line.format("FAILED", 19, 2) + "Doc-tests palpate_servo\n"
     assert closing_line(report) == "104 passed, 2 failed"
     assert closing_line("...\n3000 passed in 100 s\n\n") == "3000 passed in 100 s"
+    of_blender = "2 failed, 776 passed in 17.3s (0:00:17)\nError: Not freed memory blocks: 60\n"
+    assert closing_line(of_blender) == "2 failed, 776 passed in 17.3s (0:00:17)"
 
 
 def test_what_cannot_be_run_is_no_failure_and_is_not_run(ran, capsys, monkeypatch):
