@@ -154,6 +154,7 @@ def test_a_file_of_somebody_else_is_left_alone(tapped):
     assert bpy.data.cache_files[0].filepath.endswith("-animation-2.abc")
 
 
+@opens_usd
 def test_a_file_plays_places_alone_where_nobody_asked_for_forces(tapped):
     assert bpy.ops.palpate.press_frames(keep="USD") == {"FINISHED"}
     at(tapped, 6)
