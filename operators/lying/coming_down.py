@@ -46,11 +46,6 @@ class Alone:
         return self.free.supports
 
     @property
-    def floor(self) -> float | None:
-        """Height of the floor, metres; None without one."""
-        return self.free.supports.floor
-
-    @property
     def rest(self) -> Rest:
         """Where it is now, and what touches it."""
         return self.free.resting.rest
@@ -151,7 +146,7 @@ def settle(things: Sequence[bpy.types.Object], graph: bpy.types.Depsgraph) -> li
     """
     coming = begun(things, graph, LANDING)
     lying = coming.settle()
-    show(things, lying, coming.floor)
+    show(things, lying, coming.supports.floor)
     return lying
 
 

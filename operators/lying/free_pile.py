@@ -51,11 +51,6 @@ class FreePile:
         return min(drawn.size for drawn in self.drawn)
 
     @property
-    def floor(self) -> float | None:
-        """Height of what they rest on, metres; None without one."""
-        return self.supports.floor
-
-    @property
     def rest(self) -> Rest:
         """Where the first one is now, and what touches it."""
         return self.pile.rest[0]

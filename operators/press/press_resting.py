@@ -67,7 +67,7 @@ def press_resting(
         lying = pressed.settle()
     except RestlessError as problem:
         raise PalpateError(ROLLS) from problem
-    first, floor = lying[0], coming.floor
+    first, floor = lying[0], coming.supports.floor
     return Pressed(
         fingers=tuple(
             PressedFinger(

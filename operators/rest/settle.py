@@ -119,7 +119,7 @@ class PALPATE_OT_settle(Acting, bpy.types.Operator):
         self._place, self._pictures = here, self._pictures + 1
         is_long = self._pictures >= MOST_PICTURES
         self._is_still = self._is_still or is_long or self._still == STILL_PICTURES
-        show(things, lying, coming.floor)
+        show(things, lying, coming.supports.floor)
         if is_done:
             self._stay.end(context)
             self._tell(things, lying)

@@ -53,14 +53,6 @@ class UpperTiles:
         """Free the tiles of a block of columns."""
         self.tiles[column] = []
 
-    @classmethod
-    def zeros(cls, size: int, tile: int = TILE) -> UpperTiles:
-        """Zero matrix, (size, size), with all its columns."""
-        zeros = cls(size, tile)
-        for _ in pairwise(zeros.edges):
-            zeros.add_column()
-        return zeros
-
     @property
     def size(self) -> int:
         """Numbers held by the tiles."""

@@ -69,9 +69,7 @@ impl Joint {
             if after + (after - before) > most_work {
                 return (made, false);
             }
-            if pace.is_unhurried() {
-                self.easing.learn(made, error);
-            }
+            self.easing.learn(made, error);
         }
         (pace.linearisations, false)
     }

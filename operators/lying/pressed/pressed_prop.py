@@ -109,7 +109,7 @@ class PressedProp:
             for other in self.others
             if (found := other.handle.find()) is not None
         ]
-        show([one for one, _ in pairs], [lying for _, lying in pairs], self._coming.floor)
+        show([one for one, _ in pairs], [lying for _, lying in pairs], self._coming.supports.floor)
 
     def give_back(self, thing: bpy.types.Object) -> None:
         """Have all objects as they were before."""
@@ -119,7 +119,7 @@ class PressedProp:
 
     def leave(self, thing: bpy.types.Object, drawn: DrawnBody) -> None:
         """Have the object lie where its body is now; the others do."""
-        lay(thing, drawn.frame, self._coming.floor)
+        lay(thing, drawn.frame, self._coming.supports.floor)
 
     def follow(self, thing: bpy.types.Object, drawn: DrawnBody, snapshot: Snapshot) -> DrawnBody:
         """The body where a tick left it; all objects are moved there."""

@@ -88,13 +88,13 @@ class FreeStroke:
 
     def make_ready(self, thing: bpy.types.Object) -> None:
         """Move the object to where it came to rest, and those that it rests on."""
-        show([thing], [self.rested], self._coming.floor)
+        show([thing], [self.rested], self._coming.supports.floor)
         self._show_others(self._others)
 
     def leave(self, thing: bpy.types.Object, stroked: Stroked) -> None:
         """Have the object lie where it was left."""
         if stroked.lying is not None:
-            show([thing], [stroked.lying], self._coming.floor)
+            show([thing], [stroked.lying], self._coming.supports.floor)
 
     def follow(self, stroked: Stroked) -> None:
         """Have those that the object rests on lie where they are."""
@@ -111,7 +111,7 @@ class FreeStroke:
         for (handle, _), one in zip(self._before[1:], lying, strict=False):
             found = handle.find()
             if found is not None:
-                show([found], [one], self._coming.floor)
+                show([found], [one], self._coming.supports.floor)
 
     def close(self) -> None:
         """Nothing goes on in the background."""

@@ -1,11 +1,11 @@
-//! Which part of the way pushes turn from one linearisation to the next, where there is no clock.
+//! Which part of the way pushes turn from one linearisation to the next.
 //!
 //! Beside a tool's edge its normal turns with the point that is pushed, and the push turns the point
 //! back: pushes go to and fro between two directions, each of which the other one's forces ask for.
 //! A part of the way ends where the whole does, and gets there. What lies along such a direction is
 //! still clear of the tool: any half-space that holds the whole tool is.
 
-/// So many linearisations go all of the way.
+/// So many linearisations go all of the way: as many as a tick of 1 kHz makes.
 const WHOLE: usize = 6;
 /// One that leaves less than this share of the error before it helps.
 const HELPS: f64 = 0.7;

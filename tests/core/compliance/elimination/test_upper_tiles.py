@@ -5,10 +5,18 @@ from palpate.core.compliance.elimination.extend_add import extend_add, runs_betw
 from palpate.core.compliance.elimination.upper_tiles import UpperTiles
 
 
+def zeros(size, tile):
+    """A zero matrix, (size, size), with all its columns."""
+    made = UpperTiles(size, tile)
+    for _ in made.edges[1:]:
+        made.add_column()
+    return made
+
+
 @pytest.mark.parametrize("size", [0, 1, 7, 8, 30])
 def test_a_gram_matrix_is_subtracted(rng, size):
     panel = np.asfortranarray(rng.normal(size=(5, size)))
-    tiles, flops = UpperTiles.zeros(size, tile=8), []
+    tiles, flops = zeros(size, 8), []
     tiles.subtract_gram(panel, flops.append)
     np.testing.assert_allclose(tiles.dense(), -panel.T @ panel, atol=1e-14)
     assert sum(flops) == 5 * size**2
@@ -19,7 +27,7 @@ def test_extend_add_is_addition_by_node_numbers(rng, tile):
     """Against one dense matrix with rows and columns picked entry by entry."""
     pivot_count, boundary, size = 9, 27, 21
     targets = np.sort(rng.choice(pivot_count + boundary, size, replace=False))
-    child = UpperTiles.zeros(size, tile)
+    child = zeros(size, tile)
     child.subtract_gram(np.asfortranarray(rng.normal(size=(size, size))), lambda _: None)
     pivots = np.zeros((pivot_count, pivot_count), order="F")
     border = np.zeros((pivot_count, boundary), order="F")
@@ -52,7 +60,7 @@ def test_children_are_added_together_as_one_after_the_other(rng):
     tile, boundary, pivot_count = 7, 30, 6
     children, targets = [], []
     for size in (18, 25, 0):
-        child = UpperTiles.zeros(size, tile)
+        child = zeros(size, tile)
         child.subtract_gram(np.asfortranarray(rng.normal(size=(3, size))), lambda _: None)
         children.append(child)
         targets.append(np.sort(rng.choice(pivot_count + boundary, size, replace=False)))
