@@ -20,14 +20,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.spatial import cKDTree
 
 from ...body.pair_blocks import pair_blocks
 from ...body.soft_body import SoftBody
 from ...stiffness.formulation import LINEAR, SMOOTHED
 from .far_side import FarSide, far_side
 from .half_space import surface_displacement
-from .surface_nodes import mean_edges, of_one_material, surface_evenness, surface_softness
+from .surface_nodes import (
+    mean_edges,
+    of_one_material,
+    pairs_within,
+    resolved_lengths,
+    surface_evenness,
+    surface_softness,
+)
 from .surface_shape import node_normals
 
 # Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
@@ -68,7 +74,8 @@ class RegularField:
     ----------
     body : of the field.
     normals : float64 (s, 3), outward unit normals at the surface nodes.
-    edges : float64 (s,), mean length of the surface's edges at each node, metres.
+    edges : float64 (s,), length at each node in which distances to others are told, metres: that
+        of the surface's edges or somewhat more, see :func:`.surface_nodes.resolved_lengths`.
     regular : float64 (s, 3, 3), how far a node gives way beyond a half-space, m / N at 1 Pa.
     slope : float64 (s, 3, 3, 3), how that changes per metre as the force moves away, by direction.
     excess : float64 (s,), what finite elements add to the coupling of pushes with displacements
@@ -93,8 +100,8 @@ class RegularField:
     def of(cls, body: SoftBody) -> RegularField:
         """Regular field from the rings around all surface nodes."""
         mesh = body.mesh
-        normals, edges, softness = node_normals(mesh), mean_edges(body), surface_softness(body)
-        places = mesh.nodes[mesh.surface_nodes]
+        normals, softness = node_normals(mesh), surface_softness(body)
+        edges, places = resolved_lengths(body, normals), mesh.nodes[mesh.surface_nodes]
         _, _, inner, outer = BELIEVED[body.formulation]
         a, b = pairs_within(places, outer * edges)
         apart = np.linalg.norm(places[a] - places[b], axis=1)
@@ -104,7 +111,7 @@ class RegularField:
         ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (alike > 0))
         a, b, weight = a[ring], b[ring], alike[ring]
         beyond = pair_blocks(body, a, b) - half_space_between(body, places, normals, softness, a, b)
-        far = far_side(mesh, edges, THIN)
+        far = far_side(mesh, mean_edges(body), THIN)
         # Seen at a with the force at b, and the other way round.
         node, other = np.concatenate([a, b]), np.concatenate([b, a])
         offsets = places[other] - places[node]
@@ -244,21 +251,6 @@ def _fitted(
     regular = fit[:, 0].reshape(-1, 3, 3)
     slope = (fit[:, 1:] / edges[:, None, None]).reshape(-1, 3, 3, 3)
     return 0.5 * (regular + regular.transpose(0, 2, 1)), slope, known
-
-
-def pairs_within(
-    places: NDArray[np.float64], reach: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs a < b of places (s, 3) no farther apart than the mean of their reaches (s,)."""
-    tree = cKDTree(places)
-    found = tree.query_ball_point(places, reach)
-    a = np.repeat(np.arange(len(places)), [len(one) for one in found])
-    b = np.concatenate([np.asarray(one, dtype=np.int64) for one in found])
-    a, b = np.minimum(a, b), np.maximum(a, b)
-    codes = np.unique(a[a != b] * len(places) + b[a != b])
-    a, b = np.divmod(codes, len(places))
-    near = np.linalg.norm(places[a] - places[b], axis=1) <= 0.5 * (reach[a] + reach[b])
-    return a[near], b[near]
 
 
 def facing(

@@ -26,11 +26,10 @@ from .regular_field import (
     RegularField,
     facing,
     half_space_between,
-    pairs_within,
     seen_across,
 )
 from .solid_angle import edge_shares, node_angles, sharpness
-from .surface_nodes import of_one_material
+from .surface_nodes import of_one_material, pairs_within
 from .surface_shape import node_areas
 
 

@@ -5,11 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bodies.baked_body import baked_body
+from bodies.bare_body import bare_body
+from bodies.free_shapes import shell_ball
 
 from palpate.core.contact.near_field.compliance_beneath import near_correction
 from palpate.core.contact.near_field.contact_points import ContactPoints, contact_points
 from palpate.core.contact.near_field.half_space import surface_displacement
 from palpate.core.contact.near_field.point_compliance import point_compliance
+from palpate.core.contact.near_field.surface_nodes import mean_edges, resolved_lengths
+from palpate.core.contact.near_field.surface_shape import node_normals
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 
@@ -261,3 +265,24 @@ def test_no_point_pulls_itself_in_where_pins_are_nearer_than_points(cubes):
     everyone = np.arange(len(points))
     blocks = point_compliance(cubes[12], vast, everyone, everyone, near_correction(cubes[12], vast))
     assert np.linalg.eigvalsh(np.einsum("iixy->ixy", blocks)).min() > 0
+
+
+def test_distances_are_told_in_wider_lengths_where_smoothed_elements_meet_an_even_surface(
+    mouse_mesh,
+):
+    def wider(mesh, formulation):
+        body = bare_body(mesh, np.empty(0, np.int64), 0.3, formulation)
+        return resolved_lengths(body, node_normals(mesh)) / mean_edges(body)
+
+    mesh, _ = mouse_mesh
+    places = mesh.nodes[mesh.surface_nodes]
+    bent = np.linalg.norm(places - 1e-3 * THIN[:, None], axis=2).argmin(axis=1)
+    np.testing.assert_array_equal(wider(mesh, "linear"), 1.0)
+    np.testing.assert_array_equal(wider(mesh, "smoothed")[bent], 1.0)
+    even, ball = shell_ball(0.03, 500, 1.0), shell_ball(0.03, 500, 1.6)
+    flat = TetMesh.checked(ball.nodes * [1.0, 1.0, 0.4], ball.tets)
+    np.testing.assert_allclose(wider(even, "smoothed"), 1.23, atol=0.07)
+    assert wider(ball, "smoothed").min() > 1.2
+    assert wider(ball, "smoothed").mean() > 1.1 * wider(even, "smoothed").mean()
+    middle = np.linalg.norm(flat.nodes[flat.surface_nodes, :2], axis=1) < 0.01
+    np.testing.assert_array_equal(wider(flat, "smoothed")[middle], 1.0)
