@@ -18,7 +18,7 @@ from ...mesh.tet_mesh import TetMesh
 from ...stiffness.formulation import LINEAR, SMOOTHED
 from ...stiffness.pins import NoPins, PinBelow, PinCore, PinNodes, Pins, PinWeights
 from ..settings import BakeSettings
-from .bake_cost import COMPRESSING_SHARE, PROCESS_GROWTH, BakeCost, compressing_flops
+from .bake_cost import COMPRESSING_SHARE, BakeCost, compressing_flops, process_bytes
 from .memory import automatic_form, memory_refusal
 from .size import MeshSize, ShapeSize
 
@@ -107,15 +107,15 @@ class EliminationLaws:
 ELIMINATION = {
     LINEAR: EliminationLaws(
         PowerLaw(2220.0, 1.80, 0.14),
-        PowerLaw(5350.0, 0.71, 0.59),
+        PowerLaw(258.0, 1.025, 0.59),
         PowerLaw(7010.0, 2.20, -0.58),
-        PowerLaw(400.0, 1.14, 0.34),
+        PowerLaw(290.0, 1.155, 0.34),
     ),
     SMOOTHED: EliminationLaws(
         PowerLaw(676.0, 1.88, 0.35),
-        PowerLaw(3650.0, 0.93, 0.45),
+        PowerLaw(1780.0, 0.984, 0.45),
         PowerLaw(1210.0, 2.30, -0.30),
-        PowerLaw(554.0, 1.10, 0.46),
+        PowerLaw(1164.0, 0.993, 0.46),
     ),
 }
 
@@ -245,7 +245,7 @@ def _elimination_cost(nodes: int, free: int, settings: BakeSettings, form: str) 
         nodes,
         free,
         flops / dgemm_rate(settings.threads),
-        int(PROCESS_GROWTH * peak + stiffness * nodes),
+        process_bytes(peak) + stiffness * nodes,
         int(table + MESH_BYTES * nodes),
         form,
     )
