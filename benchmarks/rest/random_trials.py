@@ -1,8 +1,9 @@
 """Free bodies that are dropped, pressed, pinched and lifted anyhow, a thousand times.
 
-    python benchmarks/rest/random_trials.py [--trials 1000] [--first 0]
+    python benchmarks/rest/random_trials.py [--trials 1000] [--first 0] [--pairs]
 
-What must hold of each is told in ``tests/referees/rest_trials.py``; a trial is known by its seed.
+What must hold of each is told in ``tests/referees/rest_trials.py``, and with ``--pairs``, one laid
+down on another, in ``pile_trials.py`` there; a trial is known by its seed.
 The exit status tells whether all of them hold.
 """
 
@@ -12,6 +13,7 @@ import argparse
 import sys
 
 from palpate.core.errors import PalpateError
+from palpate.tests.referees.pile_trials import pile_trial
 from palpate.tests.referees.rest_trials import KINDS, Outcome, trial
 
 
@@ -20,13 +22,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--trials", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, help="seed of the first")
+    parser.add_argument("--pairs", action="store_true", help="one body laid down on another")
     arguments = parser.parse_args()
+    tried = pile_trial if arguments.pairs else trial
     outcomes: dict[str, list[Outcome]] = {kind: [] for kind in KINDS}
     fallen = []
     for seed in range(arguments.first, arguments.first + arguments.trials):
         kind = KINDS[seed % len(KINDS)]
         try:
-            outcome = trial(seed)
+            outcome = tried(seed)
         except PalpateError as problem:
             fallen.append(seed)
             print(f"seed {seed}, {kind}: {problem}", flush=True)

@@ -11,6 +11,7 @@ goes, and where it slides off a hand's edge, round which a force turns by ten de
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -22,6 +23,7 @@ from scipy.spatial.transform import Rotation
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import Tool, plate, sphere
+from palpate.core.pile.pile import Pile
 from palpate.core.rest.rest import Rest
 from palpate.core.rest.rest_settings import RestSettings
 from palpate.core.rest.resting import Resting
@@ -91,57 +93,73 @@ def shapes() -> tuple[SoftBody, ...]:
 
 
 @dataclass(frozen=True)
-class _Hands:
+class Hands:
     """Tools where they wait, and how far from there they have gone at each tick, (t, hands, 3)."""
 
     tools: list[tuple[Tool, Pose]]
     way: Array
 
 
-class _Trial:
-    """A body on its way, and the worst so far."""
+# No hands, for so many ticks.
+ALONE = Hands([], np.zeros((150, 0, 3)))
 
-    def __init__(self, body: SoftBody) -> None:
-        self.body = body
-        self.size = float(np.linalg.norm(np.ptp(body.mesh.nodes, axis=0)))
-        self.reach = _reach(body.mesh.nodes[body.mesh.surface_nodes])
-        self.weight = body.mass * GRAVITY
+
+class Trial:
+    """Bodies on their way, and the worst so far."""
+
+    def __init__(self, bodies: Sequence[SoftBody]) -> None:
+        self.sizes = [float(np.linalg.norm(np.ptp(body.mesh.nodes, axis=0))) for body in bodies]
+        self.reaches = [_reach(body.mesh.nodes[body.mesh.surface_nodes]) for body in bodies]
+        self.weights = [body.mass * GRAVITY for body in bodies]
         self.gained = self.sunk = self.stretched = 0.0
 
-    def go(self, resting: Resting, hands: _Hands, seconds: float) -> Rest:
-        """Hands go their way, a tick a step; the body is where it came to."""
+    def go(self, moving: Resting | Pile, hands: Hands, seconds: float) -> tuple[Rest, ...]:
+        """Hands go their way, a tick a step; each body is where it came to."""
         starts = [pose for _, pose in hands.tools]
         for _ in range(FOUND):
-            rest = resting.step(seconds)
+            rests = _step(moving, seconds)
         before = np.zeros((len(starts), 3))
         for moved in hands.way:
-            resting.lead(
+            moving.lead(
                 [Pose(s.position + by, s.rotation) for s, by in zip(starts, moved, strict=True)]
             )
-            energy, pushed = self.energy(rest), _pushes(rest)
-            rest = resting.step(seconds)
+            energy, pushed = self.energy(rests), _pushes(rests)
+            rests = _step(moving, seconds)
             by = moved - before
-            put_in = max(float((pushes * by).sum()) for pushes in (pushed, _pushes(rest)))
-            scale = self.weight * self.size + abs(put_in)
-            self.gained = max(self.gained, (self.energy(rest) - energy - put_in) / scale)
+            put_in = max(float((pushes * by).sum()) for pushes in (pushed, _pushes(rests)))
+            scale = sum(self.weights) * max(self.sizes) + abs(put_in)
+            self.gained = max(self.gained, (self.energy(rests) - energy - put_in) / scale)
             before = moved
-            self.look(rest)
-        return rest
+            self.look(rests)
+        return rests
 
-    def energy(self, rest: Rest) -> float:
-        """Elastic and of its height, J."""
-        return rest.elastic + self.weight * float(rest.centre[2])
+    def energy(self, rests: Sequence[Rest]) -> float:
+        """Elastic and of their heights, J."""
+        raised = zip(self.weights, rests, strict=True)
+        return sum(rest.elastic + weight * float(rest.centre[2]) for weight, rest in raised)
 
-    def look(self, rest: Rest) -> None:
-        """Take down how deep it is in the floor, and how far it is stretched."""
-        surface = rest.surface()
-        self.sunk = max(self.sunk, float(-surface[:, 2].min()) / self.size)
-        self.stretched = max(self.stretched, _reach(surface) / self.reach)
+    def look(self, rests: Sequence[Rest]) -> None:
+        """Take down how deep they are in the floor, and how far they are stretched."""
+        for rest, size, reach in zip(rests, self.sizes, self.reaches, strict=True):
+            surface = rest.surface()
+            self.sunk = max(self.sunk, float(-surface[:, 2].min()) / size)
+            self.stretched = max(self.stretched, _reach(surface) / reach)
+
+    def unborne(self, rests: Sequence[Rest]) -> float:
+        """What of the weight of all the floor does not bear, as a share."""
+        borne = -sum(float(rest.supports[0].force[2]) for rest in rests)
+        return abs(borne / sum(self.weights) - 1.0)
 
 
-def _pushes(rest: Rest) -> Array:
-    """Of hands on the body, (hands, 3), N."""
-    return np.array([-touch.force for touch in rest.tools]).reshape(-1, 3)
+def _step(moving: Resting | Pile, seconds: float) -> tuple[Rest, ...]:
+    told = moving.step(seconds)
+    return told if isinstance(told, tuple) else (told,)
+
+
+def _pushes(rests: Sequence[Rest]) -> Array:
+    """Of hands on all bodies, (hands, 3), N."""
+    pushes = [[-touch.force for touch in rest.tools] for rest in rests]
+    return np.array(pushes).reshape(len(rests), -1, 3).sum(axis=0)
 
 
 def _reach(surface: Array) -> float:
@@ -160,24 +178,23 @@ def trial(seed: int) -> Outcome:
     settings = RestSettings(
         friction=float(random.choice([0.0, 0.3, 1.0])), drag_time=float(random.uniform(0.02, 0.1))
     )
-    tried, alone = _Trial(body), _Hands([], np.zeros((150, 0, 3)))
+    tried = Trial([body])
     resting = Resting(body, floors, placement=placement, settings=settings)
-    rest = tried.go(resting, alone, 1e-3)
+    (rest,) = tried.go(resting, ALONE, 1e-3)
     kind = KINDS[seed % len(KINDS)]
     if kind != "settle":
-        hands = _hands(kind, random, rest.surface())
+        hands = hands_for(kind, random, rest.surface())
         resting = Resting(body, floors, hands.tools, placement=rest.placement, settings=settings)
-        rest = tried.go(resting, hands, 1e-3)
+        (rest,) = tried.go(resting, hands, 1e-3)
         resting = Resting(body, floors, placement=rest.placement, settings=settings)
     for _ in range(MOST_LEGS):
-        rest = tried.go(resting, alone, 4e-3)
-        unborne = abs(float(-rest.supports[0].force[2]) / tried.weight - 1.0)
+        unborne = tried.unborne(tried.go(resting, ALONE, 4e-3))
         if unborne <= MOST_UNBORNE:
             break
     return Outcome(tried.gained, tried.sunk, tried.stretched, unborne)
 
 
-def _hands(kind: str, random: np.random.Generator, surface: Array) -> _Hands:
+def hands_for(kind: str, random: np.random.Generator, surface: Array) -> Hands:
     """One that presses from above, or two that come from both sides."""
     if kind == "press":
         tool = sphere(float(random.uniform(0.006, 0.015))) if random.random() < 0.5 else _HAND
@@ -186,7 +203,7 @@ def _hands(kind: str, random: np.random.Generator, surface: Array) -> _Hands:
         middle = surface[:, :2].mean(axis=0) + random.uniform(-0.1, 0.1, 2) * np.ptp(surface, 0)[:2]
         start = [*middle, high + AIR + (0.0 if tool is _HAND else tool.radius)]
         way = np.array([[0.0, 0.0, -AIR - depth]])
-        return _Hands(
+        return Hands(
             [(tool, Pose.at(start))], _path([np.zeros((1, 3)), way, way, np.zeros((1, 3))])
         )
     turn = float(random.uniform(0.0, 2.0 * np.pi))
@@ -203,7 +220,7 @@ def _hands(kind: str, random: np.random.Generator, surface: Array) -> _Hands:
     closed = (AIR + 0.5 * squeeze) * np.array([axis, -axis])
     up = np.array([0.0, 0.0, float(random.uniform(0.01, 0.03)) if kind == "lift" else 0.0])
     none, away = np.zeros((2, 3)), -2.0 * AIR * np.array([axis, -axis])
-    return _Hands(tools, _path([none, closed, closed + up, closed + up, away + up]))
+    return Hands(tools, _path([none, closed, closed + up, closed + up, away + up]))
 
 
 def _path(corners: list[Array]) -> Array:

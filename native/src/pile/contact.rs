@@ -5,6 +5,15 @@ use glam::DVec3;
 /// Points of the other body that carry a contact's force at most.
 pub(super) const MOST_SHARES: usize = 16;
 
+/// Present by less, it presses no more than that.
+const LEAST_PRESENCE: f64 = 1e-3;
+
+/// By how much more a contact gives way than its bodies do, as a share of that.
+#[inline]
+pub(super) fn fading(presence: f64) -> f64 {
+    1.0 / presence.max(LEAST_PRESENCE) - 1.0
+}
+
 /// Contact points that carry a force, and their shares.
 #[derive(Debug, Clone, Copy)]
 pub struct Shares {
@@ -67,12 +76,15 @@ pub struct Contact {
     pub normal: DVec3,
     /// From the other, m.
     pub gap: f64,
+    /// How deep in another body it does not press yet, m.
+    pub(super) within: f64,
     /// How much it is on the other, from 1 to 0 beyond an edge.
     pub(super) presence: f64,
     /// Force on the point's body along the normal, N.
     pub push: f64,
-    /// How much more it gives way than its bodies do, m/N.
+    /// How much more it gives way than its bodies do, m/N, and as a share of how they do.
     pub(super) spring: f64,
+    pub(super) fading: f64,
     /// Force on it across, by friction, in the world, N.
     pub aside: DVec3,
     /// Where on the other the point stuck.
@@ -94,9 +106,11 @@ impl Contact {
             triangle: 0,
             normal: DVec3::ZERO,
             gap: f64::INFINITY,
+            within: 0.0,
             presence: 1.0,
             push: 0.0,
             spring: 0.0,
+            fading: 0.0,
             aside: DVec3::ZERO,
             anchor: None,
             slips: false,
@@ -107,6 +121,27 @@ impl Contact {
     #[inline]
     pub fn force(&self) -> DVec3 {
         self.normal * self.push + self.aside
+    }
+
+    /// A point within another body is let out by so much, m. What it is deeper in than its push tells,
+    /// by more than `unseen`, it does not press yet: as it went over an edge another face was found, or
+    /// it is more on the body than it was.
+    pub(super) fn come_out(&mut self, by: f64, unseen: f64) {
+        if self.other().is_none() || self.gap.is_infinite() {
+            return;
+        }
+        let deep = (self.within - self.gap).max(0.0);
+        let within = (self.within - by).clamp(0.0, deep);
+        let fades = if self.fading > 0.0 {
+            (fading(self.presence) / self.fading).min(1.0)
+        } else {
+            0.0
+        };
+        let told = fades * self.spring * self.push;
+        let jump = self.within - within - self.gap - told - unseen;
+        let within = within + jump.max(0.0);
+        self.gap += within - self.within;
+        self.within = within;
     }
 
     /// What is to be kept first where there is no room for all: what presses, then what is near.
@@ -150,5 +185,58 @@ impl Contact {
         } else {
             &[]
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(gap: f64) -> Contact {
+        Contact {
+            gap,
+            ..Contact::new(0, 0, Against::Body(1))
+        }
+    }
+
+    #[test]
+    fn one_found_deep_within_comes_out_little_by_little() {
+        let mut found = contact(-1.0);
+        found.come_out(0.1, 0.2);
+        assert!((found.gap + 0.2).abs() < 1e-12 && (found.within - 0.8).abs() < 1e-12);
+        // Pushed out by what it presses, it is let out by as much more.
+        found.gap = 0.0;
+        found.come_out(0.1, 0.2);
+        assert!((found.gap + 0.1).abs() < 1e-12 && (found.within - 0.7).abs() < 1e-12);
+        // It has come out by itself.
+        found.gap = 0.9;
+        found.come_out(0.1, 0.2);
+        assert!(found.within == 0.0 && (found.gap - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_that_fades_in_beside_an_edge_does_not_press_all_at_once() {
+        let mut faded = Contact {
+            presence: 0.5,
+            push: 2.0,
+            spring: 0.25,
+            fading: fading(0.5),
+            ..contact(-0.5)
+        };
+        faded.come_out(0.01, 0.02);
+        assert_eq!(faded.within, 0.0);
+        faded.presence = 1.0;
+        faded.come_out(0.01, 0.02);
+        assert!((faded.within - 0.48).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rigid_tool_presses_at_once() {
+        let mut rigid = Contact {
+            gap: -1.0,
+            ..Contact::new(0, 0, Against::Obstacle(0))
+        };
+        rigid.come_out(0.1, 0.2);
+        assert_eq!(rigid.gap, -1.0);
     }
 }

@@ -31,6 +31,10 @@ fn finer(members: &[Member], first: usize, second: usize) -> [usize; 2] {
     }
 }
 
+/// Around an edge a push turns from one face to the next by so much at most, rad, each time that it is
+/// looked at: what it has pressed aside would else spring back at once.
+const MOST_TURN: f64 = 0.06;
+
 /// A point of a body and what it is near to.
 type Near = (usize, u32, Against);
 
@@ -73,8 +77,8 @@ impl Meeting {
     ) {
         self.found.clear();
         let stays = |contact: &Contact| {
-            let margin =
-                FORGOTTEN * MARGIN * members[contact.body].touchable.spacing(contact.point);
+            let margin = MARGIN * members[contact.body].touchable.spacing(contact.point);
+            let margin = FORGOTTEN * margin + went(contact, members);
             contact.push > 0.0 || contact.gap <= margin
         };
         // Those that stay need not be found.
@@ -114,7 +118,7 @@ impl Meeting {
     ) {
         let pose = member.placement.to_body(&rigid.pose);
         let (surface, first) = member.touchable.of(rigid.is_hand);
-        let margin = MARGIN * surface.spacing();
+        let margin = MARGIN * surface.spacing() + member.went();
         let is_near = |middle: DVec3, radius| {
             rigid.tool.least_distance(pose.to_tool(middle)) <= margin + radius
         };
@@ -128,7 +132,7 @@ impl Meeting {
 
     fn near_body(&mut self, members: &[Member], [body, other]: [usize; 2]) {
         let (member, against) = (&members[body], &members[other]);
-        let margin = MARGIN * member.touchable.own().spacing();
+        let margin = MARGIN * member.touchable.own().spacing() + member.went() + against.went();
         let beside = BESIDE * member.touchable.own().spacing();
         let (middle, reach) = against.around;
         let middle = member
@@ -156,6 +160,13 @@ impl Meeting {
             }
         });
     }
+}
+
+/// How far its bodies went in the last tick at most, m, and so perhaps in this one towards each other.
+#[inline]
+fn went(contact: &Contact, members: &[Member]) -> f64 {
+    let other = contact.other().map_or(0.0, |number| members[number].went());
+    members[contact.body].went() + other
 }
 
 /// Finds where a contact's point is on what it meets, how far from it and which way out.
@@ -191,14 +202,29 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_
                 beside,
             ) {
                 Some(met) => {
-                    (contact.gap, contact.triangle) = (met.gap, met.triangle);
-                    contact.presence = met.presence;
-                    contact.normal = other.placement.rotation * met.normal;
+                    let normal = other.placement.rotation * met.normal;
+                    contact.normal = if contact.push > 0.0 {
+                        turned(contact.normal, normal)
+                    } else {
+                        normal
+                    };
+                    contact.gap = met.gap * normal.dot(contact.normal) + contact.within;
+                    (contact.triangle, contact.presence) = (met.triangle, met.presence);
                 }
                 None => contact.gap = f64::INFINITY,
             }
         }
     }
+}
+
+/// A direction turned towards another, by [`MOST_TURN`] at most.
+fn turned(from: DVec3, to: DVec3) -> DVec3 {
+    let angle = from.angle_between(to);
+    if angle <= MOST_TURN {
+        return to;
+    }
+    let across = (to - from * from.dot(to)).normalize_or(from.any_orthonormal_vector());
+    from * MOST_TURN.cos() + across * MOST_TURN.sin()
 }
 
 /// Contacts that may press in this tick: those that do, and the nearest others, as many as there is
@@ -211,6 +237,7 @@ pub(super) fn choose(
 ) {
     let is_near = |contact: &Contact| {
         let watched = WATCHED * members[contact.body].touchable.spacing(contact.point);
+        let watched = watched + went(contact, members);
         contact.gap.is_finite() && (contact.push > 0.0 || contact.gap <= watched)
     };
     chosen.clear();
@@ -237,5 +264,23 @@ pub(super) fn share_out(contact: &mut Contact, members: &[Member]) {
         let other = &members[number];
         let normal = other.placement.direction_to_body(contact.normal);
         contact.shares = shares(other.touchable.own(), contact.place, normal);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_push_turns_around_an_edge_in_many_looks() {
+        let mut normal = DVec3::Z;
+        for look in 1..=26 {
+            let before = normal;
+            normal = turned(normal, DVec3::X);
+            assert!(normal.is_normalized() && normal.dot(DVec3::Y).abs() < 1e-12);
+            assert!(before.angle_between(normal) <= MOST_TURN + 1e-9, "{look}");
+        }
+        assert!(normal.distance(DVec3::X) < 0.02);
+        assert_eq!(turned(normal, DVec3::X), DVec3::X);
     }
 }

@@ -249,6 +249,15 @@ impl Member {
         }
     }
 
+    /// How far a place of it went with it in the last tick at most, m; no more is told than contact
+    /// points are apart.
+    #[inline]
+    pub(super) fn went(&self) -> f64 {
+        let (middle, reach) = self.around;
+        let reach = reach + middle.distance(self.motion.centre);
+        self.motion.most(reach).min(self.touchable.own().spacing())
+    }
+
     /// It moves as a whole by its weight and what presses it.
     pub(super) fn move_on(&mut self) {
         let Some(mobility) = &self.mobility else {

@@ -9,6 +9,9 @@ use crate::body::tree::Closest;
 
 /// A surface that looks less than this cosine towards the one it meets is not met.
 const TOWARDS: f64 = -0.3;
+/// Within the body, where the nearest triangle does not, others are met that are by so many times as much
+/// farther as a place may be beyond an edge, from half of that on less and less.
+const AROUND: f64 = 16.0;
 
 /// A place near the surface of a body.
 #[derive(Debug, Clone, Copy)]
@@ -35,11 +38,21 @@ pub(super) fn met(
     beside: f64,
 ) -> Option<Met> {
     let (closest, _) = closest_point(body, place, triangle);
-    let found = towards(body, &closest, facing).or_else(|| {
+    let (mut found, mut kept) = (towards(body, &closest, facing), 1.0);
+    if found.is_none() {
         // At an edge the nearest triangle may be the one around the corner.
-        let other = nearest_towards(body, place, facing, closest.distance + beside)?;
-        towards(body, &other, facing)
-    });
+        let is_within = body
+            .face(closest.triangle)
+            .normal
+            .dot(place - closest.point)
+            < 0.0;
+        let around = if is_within { AROUND } else { 1.0 } * beside;
+        let other = nearest_towards(body, place, facing, closest.distance + around)?;
+        if is_within {
+            kept = (2.0 - 2.0 * (other.distance - closest.distance) / around).min(1.0);
+        }
+        found = towards(body, &other, facing);
+    }
     let (closest, normal) = found?;
     let way = place - closest.point;
     let along = normal.dot(way);
@@ -56,7 +69,7 @@ pub(super) fn met(
         gap: along - 0.5 * beyond,
         normal,
         triangle: closest.triangle,
-        presence: 1.0 - beyond_edge / beside,
+        presence: (1.0 - beyond_edge / beside) * kept,
     })
 }
 
@@ -143,5 +156,21 @@ mod tests {
                 assert!((met.presence - presence).abs() < 1e-9, "{met:?} at {place}");
             }
         }
+    }
+
+    /// However near another face is: what was not met would be thrown out as it comes to be.
+    #[test]
+    fn a_place_deep_beneath_the_top_fades_with_how_much_nearer_another_face_is() {
+        let (cube, beside) = (cube(), 0.01);
+        let mut before = 1.0;
+        for step in 0..200 {
+            let depth = 0.002 * f64::from(step);
+            let place = DVec3::new(0.1, 0.499, 0.5 - depth);
+            let now = met(&cube, place, DVec3::NEG_Z, 0, beside).map_or(0.0, |met| met.presence);
+            assert!(now <= before + 1e-12 && before - now < 0.03, "{depth}");
+            assert!(now > 1.0 - 1e-9 || depth > 0.08, "{depth}");
+            before = now;
+        }
+        assert_eq!(before, 0.0);
     }
 }

@@ -12,6 +12,10 @@ use glam::DVec3;
 /// A force aside within this share of its limit slips.
 const SLIPPING: f64 = 1.0 - 1e-7;
 
+/// A point that is found deep in another body is pressed out by so many distances between points in
+/// each tick, instead of throwing both apart in one.
+const OUT: f64 = 0.01;
+
 /// Bodies, and what they meet besides each other.
 #[derive(Debug, Clone)]
 pub struct Pile {
@@ -157,6 +161,12 @@ impl Pile {
         self.members.iter_mut().for_each(Member::look_at_wanted);
         self.displace();
         self.look(fingers);
+        if self.time > 0.0 {
+            for contact in &mut self.contacts {
+                let by = OUT * self.members[contact.body].touchable.own().spacing();
+                contact.come_out(by, 2.0 * by);
+            }
+        }
     }
 
     /// Finds which contact points of each body are looked at. Contacts for which there is no room go,

@@ -21,7 +21,7 @@ const ONE_MATERIAL: [f64; 2] = [4.0, 40.0];
 pub struct NodeField {
     /// Unit outward normal.
     pub normal: DVec3,
-    /// Mean length of the surface's edges there, m.
+    /// Length in which distances from there are told, m: that of the edges there, or somewhat more.
     pub edge: f64,
     /// 1 over the factor of Young's modulus around the node.
     pub softness: f64,

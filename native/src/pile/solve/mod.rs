@@ -7,7 +7,7 @@ mod system;
 
 use glam::{DMat3, DVec3};
 
-use super::contact::{Against, Contact};
+use super::contact::{Against, Contact, fading};
 use super::meeting::choose;
 use super::member::Member;
 use super::obstacle::Around;
@@ -42,9 +42,6 @@ pub(super) struct Given<'a> {
     pub friction: f64,
     pub pace: Pace,
 }
-
-/// Present by less, a tool presses no more than that.
-const LEAST_PRESENCE: f64 = 1e-3;
 
 impl Solver {
     /// Takes all memory that it ever needs for so many contacts.
@@ -87,7 +84,7 @@ impl Solver {
             let presence = around
                 .of(contact.against)
                 .map_or(contact.presence, |r| r.presence);
-            1.0 / presence.max(LEAST_PRESENCE) - 1.0
+            fading(presence)
         }));
         let (system, forces, limits) = (&mut self.system, &mut self.forces, &self.limits);
         let rubs = (&self.away[..], |place: usize| limits[place] > 0.0);
@@ -108,11 +105,14 @@ impl Solver {
         };
         rub(system, &mut self.problem, forces, &rubbed, &mut self.slips);
         for contact in contacts.iter_mut() {
-            (contact.push, contact.aside, contact.spring) = (0.0, DVec3::ZERO, 0.0);
+            (contact.push, contact.aside) = (0.0, DVec3::ZERO);
+            (contact.spring, contact.fading) = (0.0, 0.0);
         }
         let (pushes, asides) = forces.split_at(chosen.len());
-        for ((&number, &push), &spring) in chosen.iter().zip(pushes).zip(&system.springs) {
-            (contacts[number].push, contacts[number].spring) = (push, spring);
+        for (place, &number) in chosen.iter().enumerate() {
+            let contact = &mut contacts[number];
+            contact.push = pushes[place];
+            (contact.spring, contact.fading) = (system.springs[place], self.fading[place]);
         }
         for (&place, aside) in system.rubs.iter().zip(asides.chunks_exact(2)) {
             let aside = DVec3::new(0.0, aside[0], aside[1]);
