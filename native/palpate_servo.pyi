@@ -682,6 +682,13 @@ class MovedSurface:
         Raises ValueError for other than finite places of all nodes.
         """
 
+    def turns(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rotations of the nodes, (3 n, 3), their rows one after the other, from where they are at
+        rest to places (n, 3): nearest to the mean of those of the triangles around each.
+
+        Raises ValueError for other than finite places of all nodes.
+        """
+
 @final
 class Resting:
     """A body that nobody holds, pressed by fingers, without a clock.

@@ -21,7 +21,6 @@ from palpate_servo import Body, MovedSurface
 from scipy.optimize import nnls
 
 from ..body.soft_body import SoftBody
-from .turned import turns
 
 Array = NDArray[np.float64]
 
@@ -191,14 +190,14 @@ class Folds:
         self, displacements: Array, here: Array, pressed: Within
     ) -> tuple[Array, NDArray[np.float64]]:
         """What the least pushes (k,) add that keep nodes out, and these, at unit modulus."""
-        triangles = self.body.mesh.surface_local_triangles
-        turned = turns(self._rest, here, triangles)
+        turned = self._surface.turns(here).reshape(-1, 3, 3)
         loaded, ways = _ways(pressed)
         # Forces on the loaded nodes as the body at rest has them, a row of each push.
         at_rest = np.einsum("bji,kbj->kbi", turned[loaded], ways)
-        blocks = self.body.surface_blocks(loaded, loaded)
-        moved = np.einsum("abij,kbj->kai", blocks, at_rest)
-        compliance = np.einsum("lai,kai->lk", at_rest, moved)
+        size = 3 * len(loaded)
+        blocks = self.body.surface_blocks(loaded, loaded).transpose(0, 2, 1, 3)
+        flat = at_rest.reshape(-1, size)
+        compliance = flat @ blocks.reshape(size, size) @ flat.T
         # By how much they would be within without any push, along the same normals.
         alone = self._moved(displacements)
         over = np.einsum("kc,kci->ki", pressed.alphas, alone[pressed.corners])

@@ -3,9 +3,11 @@
 //! A node is within where it lies right beneath a triangle that faces it and did not at rest, as the
 //! front of an ear lies beneath its back, and where what is just outside of it is within the body.
 
+mod turned;
+
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::body::face::Face;
 use crate::body::surface::Body;
@@ -89,6 +91,11 @@ impl Moved {
             .collect()
     }
 
+    /// How the surface is turned at each node, where all nodes are moved to `places`.
+    pub fn turns(&self, places: &[DVec3]) -> Vec<DMat3> {
+        turned::turns(&self.body.nodes, places, &self.body.triangles)
+    }
+
     fn move_to(&mut self, places: &[DVec3]) {
         self.normals.fill(DVec3::ZERO);
         for (face, nodes) in self.faces.iter_mut().zip(&self.body.triangles) {
@@ -113,12 +120,18 @@ impl Moved {
     }
 
     fn fold(&self, node: u32, place: DVec3, deepest: f64) -> Option<Fold> {
+        // Most nodes are not, which is told sooner than what is over one.
+        if !self.is_within(node, place) {
+            return None;
+        }
         let normal = self.normals[node as usize];
         let (mut best, mut reach) = (None, deepest);
         let faces_it = |part: usize| least_along(normal, self.facings[part]) <= FACING;
         self.tree.visit_within(place, reach, faces_it, |triangle| {
             let face = &self.faces[triangle as usize];
-            if face.normal.dot(normal) > FACING || face.normal.dot(place - face.corners[0]) >= 0.0 {
+            // No place of the triangle is nearer than its plane.
+            let beneath = face.normal.dot(face.corners[0] - place);
+            if face.normal.dot(normal) > FACING || beneath <= 0.0 || beneath >= reach {
                 return reach;
             }
             let (alpha, point) = crate::body::face::closest_on_face(face, place);
@@ -138,7 +151,7 @@ impl Moved {
             }
             reach
         });
-        best.filter(|_| self.is_within(node, place))
+        best
     }
 
     /// Whether a node may meet a place: it is no corner of the triangle, and was not beneath that at

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from bodies.baked_body import baked_body
 from bodies.soft_block import block_mesh
+from palpate_servo import Body, MovedSurface
 from scipy.spatial.transform import Rotation
 
 from palpate.core.fold.folds import UNSEEN, Folds
-from palpate.core.fold.turned import turns
 from palpate.core.mesh.tet_mesh import TetMesh
 
 # Cells of 10 mm: two prongs, one cell across each, 20 mm apart, on a base.
@@ -134,5 +134,7 @@ def test_turns_are_those_of_a_body_that_turns():
     mesh = block_mesh((0.05, 0.04, 0.03), (2, 2, 2))
     rest = mesh.nodes[mesh.surface_nodes]
     turn = Rotation.random(random_state=7).as_matrix()
-    found = turns(rest, rest @ turn.T + [0.1, 0.0, 0.2], mesh.surface_local_triangles)
+    blocks = np.tile(np.eye(3), (len(rest), 1, 1))
+    surface = MovedSurface(Body(rest, mesh.surface_local_triangles, blocks))
+    found = surface.turns(rest @ turn.T + [0.1, 0.0, 0.2]).reshape(-1, 3, 3)
     np.testing.assert_allclose(found, np.tile(turn, (len(rest), 1, 1)), atol=1e-9)
