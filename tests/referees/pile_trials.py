@@ -24,8 +24,6 @@ from palpate.core.rest.support import Floor
 from .rest_trials import (
     ALONE,
     KINDS,
-    MOST_LEGS,
-    MOST_UNBORNE,
     Hands,
     Outcome,
     Trial,
@@ -89,11 +87,7 @@ def pile_trial(seed: int) -> PileOutcome:
             laid = [(rest.body, rest.placement) for rest in rests]
             pile = Pile(laid, floors, settings=settings)
             pile.come_in()
-    for _ in range(MOST_LEGS):
-        rests = tried.go(pile, ALONE, 4e-3)
-        unborne = tried.unborne(rests)
-        if unborne <= MOST_UNBORNE:
-            break
+    rests, unborne = tried.left_alone(pile)
     within = max(_within(*rests), _within(*reversed(rests))) / max(tried.sizes)
     return PileOutcome(tried.gained, tried.sunk, tried.stretched, unborne, within)
 
@@ -112,6 +106,4 @@ def _within(one: Rest, other: Rest) -> float:
 
 
 def _surface(rest: Rest) -> Surface:
-    mesh = rest.body.mesh
-    numbers = np.searchsorted(mesh.surface_nodes, mesh.surface_triangles)
-    return Surface(rest.surface(), numbers)
+    return Surface(rest.surface(), rest.body.mesh.surface_local_triangles)

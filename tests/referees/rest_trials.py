@@ -145,10 +145,17 @@ class Trial:
             self.sunk = max(self.sunk, float(-surface[:, 2].min()) / size)
             self.stretched = max(self.stretched, _reach(surface) / reach)
 
-    def unborne(self, rests: Sequence[Rest]) -> float:
-        """What of the weight of all the floor does not bear, as a share."""
-        borne = -sum(float(rest.supports[0].force[2]) for rest in rests)
-        return abs(borne / sum(self.weights) - 1.0)
+    def left_alone(self, moving: Resting | Pile) -> tuple[tuple[Rest, ...], float]:
+        """Without hands, until the floor bears all: each body then, and what of the weight of all
+        the floor does not bear, as a share.
+        """
+        for _ in range(MOST_LEGS):
+            rests = self.go(moving, ALONE, 4e-3)
+            borne = -sum(float(rest.supports[0].force[2]) for rest in rests)
+            unborne = abs(borne / sum(self.weights) - 1.0)
+            if unborne <= MOST_UNBORNE:
+                break
+        return rests, unborne
 
 
 def _step(moving: Resting | Pile, seconds: float) -> tuple[Rest, ...]:
@@ -187,10 +194,7 @@ def trial(seed: int) -> Outcome:
         resting = Resting(body, floors, hands.tools, placement=rest.placement, settings=settings)
         (rest,) = tried.go(resting, hands, 1e-3)
         resting = Resting(body, floors, placement=rest.placement, settings=settings)
-    for _ in range(MOST_LEGS):
-        unborne = tried.unborne(tried.go(resting, ALONE, 4e-3))
-        if unborne <= MOST_UNBORNE:
-            break
+    _, unborne = tried.left_alone(resting)
     return Outcome(tried.gained, tried.sunk, tried.stretched, unborne)
 
 

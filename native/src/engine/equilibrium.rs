@@ -6,6 +6,7 @@ use super::choose::MARGIN;
 use super::joint::easing::Easing;
 use super::joint::{AllLed, Beside, Joint, Led};
 use crate::algebra::MOST_POINTS;
+use crate::contact::fading::fading;
 use crate::contact::ground::Ground;
 use crate::tool::coefficients::AllPosed;
 use crate::tool::collider::Collider;
@@ -256,7 +257,7 @@ impl Joint {
             let presence = led[usize::from(slot.tool)]
                 .as_ref()
                 .map_or(1.0, |led| led.presence);
-            let fading = 1.0 / presence.max(LEAST_PRESENCE) - 1.0;
+            let fading = fading(presence);
             let mut share = fading;
             for (other, _) in self.kin[usize::from(slot.body)][usize::from(slot.tool)]
                 .iter()
@@ -284,9 +285,6 @@ impl Joint {
         }
     }
 }
-
-/// Present by less, a tool presses no more than that.
-const LEAST_PRESENCE: f64 = 1e-3;
 
 /// How far from a tool its points are only watched, m.
 fn watched(led: &AllLed<'_>, [tool, body]: [u8; 2]) -> f64 {

@@ -11,6 +11,7 @@ use glam::{DMat3, DVec3};
 use crate::algebra::series_share;
 use crate::body::surface::Body;
 use crate::contact::cones::{Blocks, Cone, MAX_FINGERS, Members, Vectors, mean, solve_distinct};
+use crate::contact::fading::fading;
 use crate::contact::ground::Ground;
 use crate::contact::touch::{contact_compliance, inverse_of_definite};
 use crate::control::coupling::series_compliance;
@@ -21,8 +22,6 @@ const DISTINCT: f64 = 0.02;
 /// C_pp is enlarged by this share before looking for what is missing: far less than `DISTINCT`, far
 /// more than what rounding and compression leave of a zero.
 const TELLING_SHIFT: f64 = 1e-3;
-/// Present by less, a finger does not act on the others.
-const LEAST_PRESENCE: f64 = 1e-3;
 
 /// L between the nodes of two triangles, kept until one of them changes.
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +85,7 @@ impl Several {
         let mut cones = [Cone::default(); MAX_FINGERS];
         for (p, press) in numbered(&touching) {
             let spring = series_compliance(&held[p], press.most_stiffness);
-            let fading = mean(&alone[p][p]) * (1.0 / press.presence.max(LEAST_PRESENCE) - 1.0);
+            let fading = mean(&alone[p][p]) * fading(press.presence);
             between[p] = spring + fading;
             series[p][p] += DMat3::IDENTITY * between[p];
             answers[p].seen_stiffness = series_share(&held[p], spring) * held[p];

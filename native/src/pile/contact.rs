@@ -2,17 +2,10 @@
 
 use glam::DVec3;
 
+use crate::contact::fading::fading;
+
 /// Points of the other body that carry a contact's force at most.
 pub(super) const MOST_SHARES: usize = 16;
-
-/// Present by less, it presses no more than that.
-const LEAST_PRESENCE: f64 = 1e-3;
-
-/// By how much more a contact gives way than its bodies do, as a share of that.
-#[inline]
-pub(super) fn fading(presence: f64) -> f64 {
-    1.0 / presence.max(LEAST_PRESENCE) - 1.0
-}
 
 /// Contact points that carry a force, and their shares.
 #[derive(Debug, Clone, Copy)]

@@ -38,22 +38,9 @@ pub(super) fn met(
     beside: f64,
 ) -> Option<Met> {
     let (closest, _) = closest_point(body, place, triangle);
-    let (mut found, mut kept) = (towards(body, &closest, facing), 1.0);
-    if found.is_none() {
-        // At an edge the nearest triangle may be the one around the corner.
-        let is_within = body
-            .face(closest.triangle)
-            .normal
-            .dot(place - closest.point)
-            < 0.0;
-        let around = if is_within { AROUND } else { 1.0 } * beside;
-        let other = nearest_towards(body, place, facing, closest.distance + around)?;
-        if is_within {
-            kept = (2.0 - 2.0 * (other.distance - closest.distance) / around).min(1.0);
-        }
-        found = towards(body, &other, facing);
-    }
-    let (closest, normal) = found?;
+    let (closest, normal, kept) = towards(body, &closest, facing)
+        .map(|(closest, normal)| (closest, normal, 1.0))
+        .or_else(|| around_the_corner(body, place, facing, &closest, beside))?;
     let way = place - closest.point;
     let along = normal.dot(way);
     let beyond_edge = (way - normal * along).length();
@@ -71,6 +58,28 @@ pub(super) fn met(
         triangle: closest.triangle,
         presence: (1.0 - beyond_edge / beside) * kept,
     })
+}
+
+/// The closest place of another face than the nearest one, the surface's normal there, and how much of
+/// it is left, from 1 to 0.
+fn around_the_corner(
+    body: &Body,
+    place: DVec3,
+    facing: DVec3,
+    nearest: &Closest,
+    beside: f64,
+) -> Option<(Closest, DVec3, f64)> {
+    let outward = body.face(nearest.triangle).normal;
+    let is_within = outward.dot(place - nearest.point) < 0.0;
+    let around = if is_within { AROUND } else { 1.0 } * beside;
+    let other = nearest_towards(body, place, facing, nearest.distance + around)?;
+    let (other, normal) = towards(body, &other, facing)?;
+    let left = if is_within {
+        (2.0 - 2.0 * (other.distance - nearest.distance) / around).min(1.0)
+    } else {
+        1.0
+    };
+    Some((other, normal, left))
 }
 
 /// The closest place of the triangles that look towards the other, nearer than `reach` m: of any that

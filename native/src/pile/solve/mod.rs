@@ -7,10 +7,11 @@ mod system;
 
 use glam::{DMat3, DVec3};
 
-use super::contact::{Against, Contact, fading};
+use super::contact::{Against, Contact};
 use super::meeting::choose;
 use super::member::Member;
 use super::obstacle::Around;
+use crate::contact::fading::fading;
 use crate::tool::complementarity::Complementarity;
 use pace::Pace;
 use rubbing::{Rubbed, rub};
