@@ -631,6 +631,9 @@ class Pile:
     def rotation(self, body: int) -> NDArray[np.float64]:
         """Takes directions of a body to those of the world, (3, 3)."""
 
+    def set_young_modulus(self, body: int, young_modulus: float) -> None:
+        """Have a body be as firm from the next tick on, Pa."""
+
     def elastic(self, body: int) -> float:
         """The elastic energy in a body, J."""
 
@@ -720,6 +723,9 @@ class Resting:
     @property
     def time(self) -> float:
         """Of all ticks, s."""
+
+    def set_young_modulus(self, young_modulus: float) -> None:
+        """Have the body be as firm from the next tick on, Pa."""
 
     def laid(self) -> Prop:
         """The body with its supports as they are now, for a servo that goes on from here."""
@@ -1091,8 +1097,10 @@ class Relaxation:
     of the stiffness and of the warp's Poisson equation as `CholeskyFactor.flat` makes them.
     ``law``: None for rubber; else shares and exponents, at most three, of what stretches cost and
     of what volumes do (none: as of rubber), and whether what is pulled goes on as a parabola.
-    ``springs``: a symmetric matrix (f, f) by rows. ValueError for arrays that do not fit together.
-    All vectors are (f, 3).
+    ``springs``: a symmetric matrix (f, f) by rows. ``motions``: of a body that nothing holds rigid
+    ones, orthonormal by mass, the loads of inertia against them, each (f, 3), and how loose each
+    is, zero; displacements have none of them, and forces are made to balance. ValueError for
+    arrays that do not fit together. All vectors are (f, 3).
     """
 
     def __new__(
@@ -1104,6 +1112,7 @@ class Relaxation:
         law: tuple[Sequence[tuple[float, float]], Sequence[tuple[float, float]], bool]
         | None = None,
         springs: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
+        motions: tuple[Sequence[ArrayLike], Sequence[ArrayLike], Sequence[float]] | None = None,
     ) -> Self: ...
     def another(self) -> Relaxation:
         """The same body, for another thread."""
@@ -1158,6 +1167,8 @@ class Relaxation:
         work: float,
         close: float,
         most_steps: int,
+        dead: ArrayLike | None = None,
+        loose: tuple[Sequence[ArrayLike], Sequence[ArrayLike], Sequence[float]] | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float, int]:
         """The body at rest beside rigid ``tools``, with the position and the rotation of each, that
         press p ``places`` of its surface without friction and never hold one.
@@ -1167,6 +1178,8 @@ class Relaxation:
         rest (p, 3), force over depth while one is within (p,), and which tool (p,). From ``linear``
         displacements. Linear and warped displacements, forces (p, 3) on the places, by what share
         of ``work`` it is not at rest or places are still within (``close`` is enough), and steps.
+        Forces ``dead`` press it besides; ``loose``: rigid motions as of the body, along some of
+        which it goes as it is pressed. ``compliance`` has these in it.
         """
 
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:

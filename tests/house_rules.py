@@ -29,7 +29,7 @@ core/rest
 core/pile
 core/fold
 core/grip
-core/shape/solid core/shape/paper core/shape/rotation_strain core/shape
+core/shape/solid core/shape/paper core/shape/lattice core/shape/rotation_strain core/shape
 core/bake/settings.py core/bake/cost core/bake/preview core/bake
 core/servo/link core/servo
 core/record

@@ -65,8 +65,6 @@ def cost_now(thing: bpy.types.Object) -> ShapeCost | None:
 def _limit_of(thing: bpy.types.Object) -> str:
     """What of Real this object lacks; nothing for most."""
     baked = thing.palpate
-    if baked.pin_mode == "NONE":
-        return "Without pins it is drawn and felt as a linear body"
     if baked.node_count - baked.pinned_count > MOST_FELT:
         return (
             "So large a body is drawn so but for what is finer than a coarse lattice, and felt as "

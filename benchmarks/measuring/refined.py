@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh, signed_volumes
-from palpate.core.shape.rotation_strain.tet_samples import EDGES, EIGHT
+from palpate.core.shape.lattice.tet_samples import EDGES, EIGHT
 
 
 def refined(mesh: TetMesh, fixed: NDArray[np.int64]) -> tuple[TetMesh, NDArray[np.int64]]:

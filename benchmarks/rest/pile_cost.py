@@ -81,7 +81,7 @@ def costs(pile: Pile, goals: list[Pose], ticks: int) -> tuple[np.ndarray, int]:
         start = time.process_time()
         pile.tick(DT)
         took.append(1e3 * (time.process_time() - start))
-    rests = pile.rest
+    rests = pile.rests
     borne = sum(len(touch.pushes) for rest in rests for touch in (*rest.tools, *rest.supports))
     shared = sum(len(touch.pushes) for rest in rests for touch in rest.others)
     return np.array(took), borne + shared

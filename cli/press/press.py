@@ -25,6 +25,7 @@ from ...core.shape.meeting import settled
 from ...core.shape.shapes import FORMER_NAMES, SHAPES, shape, shape_name
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
+from ..body.shape_option import add_shape, shape_of
 from ..body.tool_option import KINDS, tool_from
 from ..rest.floor_options import add_floor
 from ..rest.press_resting import pressed_on_floor, refuse_beside_floor, refuse_floor
@@ -32,7 +33,6 @@ from ..rest.rest_figures import rest_figures, touch_figures
 from ..scene.scene_commands import press_scene
 from ..scene.scene_file import is_scene
 from .press_tool import pressed_tools, tool_figures, tool_summary
-from .shape_option import add_shape, shape_of
 
 HELP = "press a body with one or several fingers and read the forces"
 TOO_DEEP = (
@@ -126,7 +126,7 @@ def _press_points(arguments: argparse.Namespace, body: SoftBody, young_modulus: 
     firm = settings.mode == "consistent"
     touches, displacements = _deformed(arguments, body, linear, young_modulus, firm=firm)
     contacts = [_contact_figures(body, touch, displacements) for touch in touches]
-    common = _common_figures(arguments, body, displacements, young_modulus)
+    common = _common_figures(arguments, displacements, young_modulus)
     common |= {"mode": settings.mode}
     coupling = _coupling(body, arguments.at, young_modulus) if len(contacts) > 1 else None
     _print(arguments, contacts, common, coupling)
@@ -140,7 +140,7 @@ def _press_tool(arguments: argparse.Namespace, body: SoftBody, young_modulus: fl
     settings = ContactSettings(young_modulus, arguments.friction or 0.0)
     linear = pressed_tools(body, tool, arguments.at, arguments.by, settings)
     touches, displacements = _deformed(arguments, body, linear, young_modulus)
-    common = _common_figures(arguments, body, displacements, young_modulus)
+    common = _common_figures(arguments, displacements, young_modulus)
     figures = [(tool_figures if arguments.json else tool_summary)(touch) for touch in touches]
     _print(arguments, figures, common)
     return 0
@@ -151,7 +151,7 @@ def _press_resting(arguments: argparse.Namespace, body: SoftBody, young_modulus:
     rest = pressed_on_floor(arguments, body, tool_from(arguments.tool), young_modulus)
     if arguments.displacements is not None:
         with atomic_file(arguments.displacements) as file:
-            np.save(file, rest.displacements(young_modulus))
+            np.save(file, rest.displacements())
     contacts = [{"tool": arguments.tool, **touch_figures(touch)} for touch in rest.tools]
     _print(arguments, contacts, rest_figures(rest, young_modulus))
     return 0
@@ -190,7 +190,7 @@ def _deformed(
     """Touches as they are felt, from ``linear`` ones, and displacements (n, 3), written where that
     is asked for; ``firm`` where the shape tells the forces, too.
     """
-    chosen, loads = shape(body, shape_of(arguments, body), arguments.body), loads_of(linear)
+    chosen, loads = shape(body, shape_of(arguments), arguments.body), loads_of(linear)
     touches = linear
     try:
         displacements = settled(body, chosen, loads, young_modulus).displacements
@@ -215,15 +215,12 @@ def _deformed(
 
 
 def _common_figures(
-    arguments: argparse.Namespace,
-    body: SoftBody,
-    displacements: NDArray[np.float64],
-    young_modulus: float,
+    arguments: argparse.Namespace, displacements: NDArray[np.float64], young_modulus: float
 ) -> dict[str, object]:
     return {
         "max_displacement": float(np.linalg.norm(displacements, axis=1).max()),
         "young_modulus": young_modulus,
-        "shape": shape_name(shape_of(arguments, body)),
+        "shape": shape_name(shape_of(arguments)),
     }
 
 

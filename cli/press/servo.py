@@ -26,6 +26,7 @@ from ...core.servo.settings import Settings
 from ...core.shape.shapes import shape
 from ...simulated.simulated_process import SimulatedDevice
 from ..body.body_argument import add_body, add_young, modulus_of
+from ..body.shape_option import add_shape, shape_of
 from ..rest.floor_options import add_floor
 from ..rest.laid_body import LaidBody, laid_body
 from ..rest.laid_scene import laid_scene
@@ -33,7 +34,6 @@ from ..scene.scene_file import is_scene
 from .from_above import highest_place, press_from_above, vector
 from .haply import add_haply_options, connect_haply
 from .servo_report import Felt, for_people, servo_report
-from .shape_option import add_shape, shape_of
 from .timing_check import add_check_timing
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def run(arguments: argparse.Namespace) -> int:
         _check_ports([port, *others])
         stopped = stack.enter_context(stopped_by_signals())
         settings = Settings(young_modulus, mode=arguments.mode)
-        made = shape(body, shape_of(arguments, body))
+        made = shape(body, shape_of(arguments))
         stack.callback(made.close)
         made.wait_for(np.zeros(0, dtype=np.int64))
         servo = servo_on(laid.native, settings, rate_hz=arguments.rate, prop=laid.prop)

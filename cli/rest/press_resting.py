@@ -17,6 +17,9 @@ from ...core.rest.bearing_points import pressing_points
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
+from ...core.shape.firm_rest import settle_firmly
+from ...core.shape.shapes import shape
+from ..body.shape_option import shape_of
 from .floor_options import floor_under, gravity, refuse_floor_of_pinned
 
 
@@ -46,10 +49,10 @@ def refuse_beside_floor(arguments: argparse.Namespace) -> None:
     """
     if arguments.mode is not None:
         raise PalpateError("--mode: it is about points; leave it out with --tool")
-    if arguments.shape not in (None, "linear"):
+    if arguments.shape == "paper":
         raise PalpateError(
-            "--shape: a body without pins has the linear one only; leave it out, or pin the body "
-            "('palpate pin')"
+            "--shape: the paper's tables are of bodies with pins; give real or linear, or pin the "
+            "body ('palpate pin')"
         )
 
 
@@ -69,7 +72,8 @@ def pressed_on_floor(
     places, ways = pairs_checked(arguments.at, arguments.by)
     floor = floor_under(arguments, body)
     settings = RestSettings(young_modulus, arguments.friction or 0.0, gravity(arguments))
-    alone = Resting(body, [floor], settings=settings).settle()
+    shapes = [shape(body, shape_of(arguments))]
+    (alone,) = settle_firmly(Resting(body, [floor], settings=settings), shapes)
     starts = [_set_down(alone, tool, place) for place in places]
     resting = Resting(
         body,
@@ -81,7 +85,8 @@ def pressed_on_floor(
     resting.settle()
     pairs = zip(starts, ways, strict=True)
     resting.lead([start.moved(way) for start, way in pairs])
-    return resting.settle()
+    (rest,) = settle_firmly(resting, shapes)
+    return rest
 
 
 def _set_down(alone: Rest, tool: Tool, place: NDArray[np.float64]) -> Pose:

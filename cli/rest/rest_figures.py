@@ -8,14 +8,16 @@ from ...core.rest.rest import BodyTouch, Rest
 
 
 def rest_figures(rest: Rest, young_modulus: float) -> dict[str, object]:
-    """Where the body lies and what bears it, as plain values; SI units, in the world."""
+    """Where the body lies and what bears it, as plain values; SI units, in the world. Young's
+    modulus is that of its material.
+    """
     return {
         "position": rest.placement.position.tolist(),
         "rotation": rest.placement.rotation.tolist(),
         "centre_of_mass": rest.centre.tolist(),
         "mass_kg": rest.body.mass,
         "floor": touch_figures(rest.supports[0]),
-        "max_displacement": float(np.linalg.norm(rest.displacements(young_modulus), axis=1).max()),
+        "max_displacement": float(np.linalg.norm(rest.displacements(), axis=1).max()),
         "elastic_energy": rest.elastic,
         "young_modulus": young_modulus,
     }

@@ -12,6 +12,8 @@ from ...core.body import body_file
 from ...core.files.atomic_file import atomic_file
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
+from ...core.shape.firm_rest import settle_firmly
+from ...core.shape.shapes import shape
 from ..body.body_argument import add_body, add_young, modulus_of
 from ..body.figure_lines import as_lines
 from ..scene.scene_commands import settle_scene
@@ -47,10 +49,11 @@ def run(arguments: argparse.Namespace) -> int:
     body = body_file.load(arguments.body)
     modulus = modulus_of(arguments, body)
     settings = RestSettings(modulus, gravity=gravity(arguments))
-    rest = Resting(body, [floor_under(arguments, body)], settings=settings).settle()
+    lying = Resting(body, [floor_under(arguments, body)], settings=settings)
+    (rest,) = settle_firmly(lying, [shape(body, "real")])
     if arguments.surface is not None:
         with atomic_file(arguments.surface) as file:
-            np.save(file, rest.surface(modulus))
+            np.save(file, rest.surface())
     figures = rest_figures(rest, modulus)
     print(json.dumps(figures) if arguments.json else as_lines(figures))
     return 0

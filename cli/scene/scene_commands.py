@@ -14,8 +14,12 @@ from ...core.contact.single_press import pairs_checked, set_down
 from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
+from ...core.pile.pile import Pile
 from ...core.rest.bearing_points import pressing_points
 from ...core.rest.rest import Rest
+from ...core.shape.firm_rest import settle_firmly
+from ...core.shape.shapes import Shape, shape
+from ..body.shape_option import shape_of
 from ..body.tool_option import tool_from
 from .scene_figures import Told, for_people, scene_figures, write_surfaces
 from .scene_file import Led, Scene, read_scene
@@ -30,7 +34,8 @@ def settle_scene(arguments: argparse.Namespace) -> int:
     """Read, let all come to rest, print."""
     refuse_options(arguments)
     scene = read_scene(arguments.body)
-    rests = scene.pile().settle()
+    pile = scene.pile()
+    rests = settle_firmly(pile, _shapes(pile, "real"))
     if arguments.surface is not None:
         write_surfaces(arguments.surface, scene, rests, Rest.surface)
     _print(arguments, scene_figures(scene, rests, scene.tool_names))
@@ -40,8 +45,10 @@ def settle_scene(arguments: argparse.Namespace) -> int:
 def press_scene(arguments: argparse.Namespace) -> int:
     """Read, let all come to rest, move the scene's tools and those that are set down, print."""
     refuse_options(arguments)
-    if arguments.shape not in (None, "linear"):
-        raise PalpateError("--shape: bodies of a scene have the linear one; leave it out")
+    if arguments.shape == "paper":
+        raise PalpateError(
+            "--shape: the paper's tables are of a body alone; give real or linear for a scene"
+        )
     scene = read_scene(arguments.body)
     rests, names = _pressed(arguments, scene)
     if arguments.displacements is not None:
@@ -55,7 +62,8 @@ def _pressed(
 ) -> tuple[tuple[Rest, ...], tuple[str, ...]]:
     """All at rest under the tools where these have gone, and the tools' names."""
     pile = scene.pile()
-    rests = pile.settle()
+    shapes = _shapes(pile, shape_of(arguments))
+    rests = settle_firmly(pile, shapes)
     if arguments.tool is None and not arguments.at and not arguments.by:
         if not scene.tools:
             raise PalpateError(
@@ -63,7 +71,7 @@ def _pressed(
                 "'tools' in the file"
             )
         pile.lead(_moved(scene.tools, scene.ways))
-        return pile.settle(), scene.tool_names
+        return settle_firmly(pile, shapes), scene.tool_names
     if arguments.tool is None:
         raise PalpateError("--tool: bodies of a scene are pressed by tools only; give one")
     places, ways = pairs_checked(arguments.at or [], arguments.by or [])
@@ -73,7 +81,13 @@ def _pressed(
     pile.settle()
     pile.lead(_moved([*scene.tools, *more], [*scene.ways, *ways]))
     names = [f"--tool {number}" for number in range(1, len(more) + 1)]
-    return pile.settle(), (*scene.tool_names, *names)
+    return settle_firmly(pile, shapes), (*scene.tool_names, *names)
+
+
+def _shapes(pile: Pile, name: str) -> list[Shape]:
+    """The shape of this name of each body; equal bodies share one."""
+    made = {body: shape(body, name) for body in pile.bodies}
+    return [made[body] for body in pile.bodies]
 
 
 def _moved(

@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from palpate_servo import Pile as NativePile
-from palpate_servo import Tool as NativeTool
 
-from ..body.native_body import native_body
 from ..body.soft_body import SoftBody
-from ..contact.near_field.contact_points import ContactPoints
-from ..contact.tool.native_tool import native_shape, native_surface
+from ..contact.tool.native_tool import native_shape
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..contact.touches import ToolTouch
 from ..errors import PalpateError
-from ..rest.bearing_points import bearing_points, pressing_points
 from ..rest.prop import at
 from ..rest.refusals import one_goal_each, rest_errors
 from ..rest.rest import Rest
 from ..rest.support import Floor, Support, friction_checked
 from .felt import Felt
 from .pile_settings import USUAL_PILE, PileSettings
+from .touched import Touched, nearest, rigid
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
-    from palpate_servo import Body, PropAmong, RigidTool, ToolSurface
+    from palpate_servo import PropAmong
 
 MOST_BODIES = 16
 # Ticks so short, in seconds, that nothing moves as a whole; at most so many until the sum of all
@@ -87,14 +83,15 @@ class Pile:
         friction_checked(settings.friction)
         friction_checked(by_tools)
         self.bodies = tuple(body for body, _ in bodies)
-        hands = [(_nearest(bodies, pose), tool) for tool, pose in tools]
+        self.firmness = (1.0,) * len(bodies)
+        hands = [(nearest(bodies, pose), tool) for tool, pose in tools]
         hands += [(self.bodies[0], tool) for tool in fingertips]
-        touched: dict[SoftBody, _Touched] = {}
+        touched: dict[SoftBody, Touched] = {}
         laid = []
         for body, placement in bodies:
             if body not in touched:
-                own = [tool for nearest, tool in hands if nearest is body]
-                touched[body] = _Touched.of(body, own, settings.spacing)
+                own = [tool for of, tool in hands if of is body]
+                touched[body] = Touched.of(body, own, settings.spacing)
             free = None
             if body.is_free:
                 free = body.mass, body.inertia.centre, body.moments, settings.drag_time
@@ -102,16 +99,16 @@ class Pile:
             laid.append((*points, body.modulus(None), free, *at(placement)))
         self._points = [touched[body].points for body in self.bodies]
         self.native_body = touched[self.bodies[0]].native
-        rigid = [
+        obstacles = [
             *((native_shape(tool), *at(pose), by_tools, True) for tool, pose in tools),
-            *(_rigid(support, self._size()) for support in supports),
+            *(rigid(support, self._size()) for support in supports),
         ]
         self._tools = tuple(tool for tool, _ in tools)
         self._led = [pose for _, pose in tools]
         self._borne = [support.pose for support in supports]
         with rest_errors(ValueError):
             self._native = NativePile(
-                laid, rigid, gravity=settings.gravity, friction=settings.friction
+                laid, obstacles, gravity=settings.gravity, friction=settings.friction
             )
 
     def laid(self) -> PropAmong:
@@ -135,6 +132,17 @@ class Pile:
 
     def _size(self) -> float:
         return max(float(body.mesh.nodes.max() - body.mesh.nodes.min()) for body in self.bodies)
+
+    def firm(self, firmness: Sequence[float]) -> None:
+        """Have each body be so many times as firm as its material, from the next step on."""
+        self.firmness = tuple(firmness)
+        for number, modulus in enumerate(self._moduli):
+            self._native.set_young_modulus(number, modulus)
+
+    @property
+    def _moduli(self) -> list[float]:
+        pairs = zip(self.bodies, self.firmness, strict=True)
+        return [times * body.modulus(None) for body, times in pairs]
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals, one each, from the next step on."""
@@ -174,7 +182,7 @@ class Pile:
             A force is no number.
         """
         self.tick(seconds)
-        return self.rest
+        return self.rests
 
     def tick(self, seconds: float = 1e-3) -> None:
         """The same without telling where the bodies are.
@@ -201,7 +209,7 @@ class Pile:
         """
         with rest_errors(RuntimeError):
             self._native.settle()
-        return self.rest
+        return self.rests
 
     def settle_on(self, ticks: int) -> bool:
         """Go on with settling by so many ticks at most; whether all rest.
@@ -228,12 +236,12 @@ class Pile:
         return [Pose(native.position(body), native.rotation(body)) for body in range(count)]
 
     @property
-    def rest(self) -> tuple[Rest, ...]:
+    def rests(self) -> tuple[Rest, ...]:
         """Where each body is now, and what touches it: tools, supports, and all other bodies by
         their numbers, its own among them, which never does.
         """
         native, count, placements = self._native, len(self.bodies), self.placements
-        contacts = native.contacts()
+        contacts, moduli = native.contacts(), self._moduli
         rests = []
         for number, body in enumerate(self.bodies):
             felt = Felt(number, body, self._points[number], placements[number], contacts)
@@ -249,49 +257,8 @@ class Pile:
                     ),
                     native.elastic(number),
                     native.time,
+                    moduli[number],
                     tuple(felt.of_body(other, placements[other]) for other in range(count)),
                 )
             )
         return tuple(rests)
-
-
-def _rigid(support: Floor | Support, size: float) -> RigidTool:
-    tool = NativeTool.endless(size) if isinstance(support, Floor) else native_shape(support.tool)
-    return tool, *at(support.pose), support.friction, False
-
-
-def _nearest(bodies: Sequence[tuple[SoftBody, Pose]], pose: Pose) -> SoftBody:
-    """The body with the surface node nearest to where a tool is."""
-
-    def away(body: SoftBody, placement: Pose) -> float:
-        nodes = body.mesh.nodes[body.mesh.surface_nodes]
-        return float(np.linalg.norm(placement.to_world(nodes) - pose.position, axis=1).min())
-
-    return min(bodies, key=lambda one: away(*one))[0]
-
-
-@dataclass(frozen=True, eq=False)
-class _Touched:
-    """Where a body can be touched: at ``points`` of its ``surface``, and behind these at those of
-    hands, where they ask for closer ones.
-    """
-
-    native: Body
-    points: ContactPoints
-    surface: ToolSurface
-    by_hands: ToolSurface | None
-
-    @classmethod
-    def of(cls, body: SoftBody, hands: Sequence[Tool], spacing: float | None) -> _Touched:
-        """Points as close as the ``hands`` with the smallest tool ask for."""
-        native = native_body(body, whole=True, may_move=True)
-        points, near = bearing_points(body, spacing)
-        surface = native_surface(native, points, near)
-        smallest = min(hands, key=lambda tool: tool.spacing, default=None)
-        if smallest is None:
-            return cls(native, points, surface, None)
-        closer, near = pressing_points(body, smallest, spacing)
-        if closer is points:
-            return cls(native, points, surface, None)
-        by_hands = native_surface(native, closer, near)
-        return cls(native, points.followed_by(closer), surface, by_hands)

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
+from ..contact.tool.tools import Tool
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,7 @@ class BodyTouch:
     areas : float64 (p,), the places' shares of the surface, square metres.
     nodes : int64 (k,), nodes of the mesh that carry force.
     nodal_forces : float64 (k, 3), on these, newton, in the body's own frame.
+    by : what touches it and where that is in the body's own frame, where it is a tool.
     """
 
     force: Array
@@ -43,6 +45,7 @@ class BodyTouch:
     areas: Array
     nodes: NDArray[np.int64]
     nodal_forces: Array
+    by: tuple[Tool, Pose] | None = None
 
     @property
     def pressures(self) -> Array:
@@ -62,7 +65,10 @@ class Rest:
     tools, supports : what touches it.
     elastic : elastic energy in it, joule.
     time : seconds on the way here, by its drag.
+    young_modulus : as firm as a linear body is that presses back as it does, pascal.
     others : soft bodies that touch it, by their numbers in a pile.
+    deformed : float64 (n, 3), displacements of its surface nodes by its law, metres; None where
+        they are linear.
     """
 
     body: SoftBody
@@ -71,7 +77,9 @@ class Rest:
     supports: tuple[BodyTouch, ...]
     elastic: float
     time: float
+    young_modulus: float
     others: tuple[BodyTouch, ...] = ()
+    deformed: Array | None = None
 
     @property
     def centre(self) -> Array:
@@ -82,31 +90,34 @@ class Rest:
         """Places (..., 3) of the body's frame in the world, metres."""
         return self.placement.to_world(places)
 
-    def displacements(self, young_modulus: float | None = None) -> Array:
+    def displacements(self) -> Array:
         """Elastic displacements (n, 3) of the surface nodes in the body's frame, metres."""
-        nodes = [touch.nodes for touch in self._touches]
-        forces = [touch.nodal_forces for touch in self._touches]
+        if self.deformed is not None:
+            return self.deformed
+        nodes = [touch.nodes for touch in self.touches]
+        forces = [touch.nodal_forces for touch in self.touches]
         return self.body.deform(
             np.concatenate([np.empty(0, np.int64), *nodes]),
             np.concatenate([np.empty((0, 3)), *forces]),
-            young_modulus,
+            self.young_modulus,
         )
 
-    def surface(self, young_modulus: float | None = None) -> Array:
+    def surface(self) -> Array:
         """The surface nodes (n, 3), moved and deformed, metres, in the world.
 
         One that is a pressed place is where contact has it: beneath it the body gives way by its
         near field, too, so that a tip is flat where it stands.
         """
         nodes = self.body.mesh.nodes[self.body.compliance.free_surface]
-        surface = self.to_world(nodes + self.displacements(young_modulus))
+        surface = self.to_world(nodes + self.displacements())
         tree = cKDTree(nodes)
-        for touch in self._touches:
+        for touch in self.touches:
             away, found = tree.query(touch.at_rest)
             nearest, is_node = np.asarray(found), away < SAME * np.ptp(nodes)
             surface[nearest[is_node]] = touch.places[is_node]
         return surface
 
     @property
-    def _touches(self) -> tuple[BodyTouch, ...]:
+    def touches(self) -> tuple[BodyTouch, ...]:
+        """All of them."""
         return (*self.tools, *self.supports, *self.others)

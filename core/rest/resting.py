@@ -5,8 +5,10 @@ rests.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 from palpate_servo import MAX_FINGERS
 from palpate_servo import Resting as NativeResting
 
@@ -24,7 +26,7 @@ from .prop import at, native_prop
 from .refusals import SwallowedError, one_goal_each, rest_errors
 from .rest import BodyTouch, Rest
 from .rest_settings import USUAL_REST, RestSettings
-from .support import Floor, Support, friction_checked
+from .support import Floor, Support, as_tool, friction_checked
 
 if TYPE_CHECKING:
     # Types only, absent at run time.
@@ -75,7 +77,7 @@ class Resting:
             )
         friction_checked(settings.friction)
         self.body = body
-        self.young_modulus = body.modulus(settings.young_modulus)
+        self._material = self.young_modulus = body.modulus(settings.young_modulus)
         native = self.native_body = native_body(body, whole=True, may_move=True)
         prop = native_prop(
             body, native, supports, placement, settings, bearing_points(body, settings.spacing)
@@ -94,6 +96,23 @@ class Resting:
                 fingers=[finger(tip, pose) for tip, pose in tools],
             )
         self._tools = tuple(tool for tool, _ in tools)
+        self._supports = list(supports)
+
+    @property
+    def bodies(self) -> tuple[SoftBody]:
+        """It alone."""
+        return (self.body,)
+
+    @property
+    def firmness(self) -> tuple[float]:
+        """How many times as firm as its material it is."""
+        return (self.young_modulus / self._material,)
+
+    def firm(self, firmness: Sequence[float]) -> None:
+        """Have the body be so many times as firm as its material, from the next step on."""
+        (times,) = firmness
+        self.young_modulus = times * self._material
+        self._native.set_young_modulus(self.young_modulus)
 
     def laid(self) -> Prop:
         """The body as it lies now, for a servo on its ``native_body`` that goes on from here."""
@@ -118,6 +137,9 @@ class Resting:
     def move_support(self, number: int, pose: Pose) -> None:
         """Have a support be elsewhere from the next step on."""
         self._native.lead_support(number, *at(pose))
+        moved = self._supports[number]
+        if isinstance(moved, Support):
+            self._supports[number] = replace(moved, pose=pose)
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals, one each, from the next step on."""
@@ -209,11 +231,29 @@ class Resting:
             for tool, told in tools
         )
 
+    def _pressing(self, placement: Pose) -> list[tuple[Tool, Pose] | None]:
+        """All that may touch it in the body's own frame: tools, None of a grip, and supports."""
+        told = self._native.touches()
+        found: list[tuple[Tool, Pose] | None] = []
+        for tool, one in zip(self._tools, told, strict=False):
+            if isinstance(tool, Grip):
+                found.append(None)
+            else:
+                laid = cast("SettledTool", one)
+                found.append((tool, Pose(laid["position"], laid["rotation"])))
+        centre = placement.to_world(self.body.inertia.centre)
+        size = float(np.ptp(self.body.mesh.nodes, axis=0).max())
+        for support in self._supports:
+            tool, pose = as_tool(support, centre, size)
+            found.append((tool, placement.pose_to_tool(pose)))
+        return found
+
     @property
     def rest(self) -> Rest:
         """Where the body is now."""
         placement = Pose(self._native.position, self._native.rotation)
-        touches = [_touch(self.body, placement, told) for told in self._native.touches()]
+        told = zip(self._native.touches(), self._pressing(placement), strict=True)
+        touches = [_touch(self.body, placement, *one) for one in told]
         return Rest(
             self.body,
             placement,
@@ -221,10 +261,18 @@ class Resting:
             tuple(touches[len(self._tools) :]),
             self._native.elastic,
             self._native.time,
+            self.young_modulus,
         )
 
+    @property
+    def rests(self) -> tuple[Rest]:
+        """The same, of it alone."""
+        return (self.rest,)
 
-def _touch(body: SoftBody, placement: Pose, told: RestTouch) -> BodyTouch:
+
+def _touch(
+    body: SoftBody, placement: Pose, told: RestTouch, by: tuple[Tool, Pose] | None
+) -> BodyTouch:
     turn = placement.rotation.T
     return BodyTouch(
         force=told["force"] @ turn,
@@ -235,4 +283,5 @@ def _touch(body: SoftBody, placement: Pose, told: RestTouch) -> BodyTouch:
         areas=told["areas"],
         nodes=body.mesh.surface_nodes[told["nodes"]],
         nodal_forces=told["nodal_forces"],
+        by=by,
     )

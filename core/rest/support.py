@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..contact.tool.pose import Pose
-from ..contact.tool.tools import Tool
+from ..contact.tool.tools import Tool, plate
 from ..errors import PalpateError
+
+# Sizes of a body that a part of a floor is wide which stands for it.
+WIDE = 30.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +67,22 @@ class Support:
 
     def __post_init__(self) -> None:
         friction_checked(self.friction)
+
+
+def as_tool(support: Floor | Support, near: NDArray[np.float64], size: float) -> tuple[Tool, Pose]:
+    """A support as a tool with its pose in the world; of a floor the part that a body ``near`` (3,)
+    of a ``size``, metres, may meet.
+    """
+    if isinstance(support, Support):
+        return support.tool, support.pose
+    pose, up = support.pose, np.asarray(support.up)
+    beneath = near - (near @ up - support.height) * up
+    return _wide_plate(WIDE * size), Pose(beneath, pose.rotation * [1.0, -1.0, -1.0])
+
+
+@lru_cache(maxsize=16)
+def _wide_plate(width: float) -> Tool:
+    return plate(width, width, rounding=1e-3 * width, name="floor")
 
 
 def friction_checked(friction: float) -> float:

@@ -7,11 +7,13 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Protocol
 
+import numpy as np
 from palpate_servo import FingerSnapshot, Snapshot
 
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
+from ..rest.support import Floor, Support, as_tool
 from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike
 from ..shape.rotation_strain.firmness import Firmness
 from ..shape.shapes import Shape, pressed_by
@@ -42,7 +44,9 @@ class _Look:
 
 @dataclass(eq=False)
 class Firming:
-    """Follows a servo's touch; ``tool`` is what all its fingers press with, where it slides.
+    """Follows a servo's touch; ``tool`` is what all its fingers press with, where it slides, and
+    ``supports`` are all that bear a body which nobody holds. Snapshots are as the body sees them
+    (``Snapshot.seen_from_body``).
 
     Between calls of :meth:`follow` a thread may be at work.
 
@@ -53,6 +57,7 @@ class Firming:
     servo: Firmed
     body: SoftBody
     tool: Tool | None = None
+    supports: Sequence[Floor | Support] = ()
     _finding: Future[Firmness] | None = None
     _worker: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, "palpate-firmness")
@@ -97,21 +102,48 @@ class Firming:
         )
 
     def pressing(self, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
-        """Loads of the fingers that touch, as a linear body would have them; none of one that gives
-        way with time, which presses as a linear one does.
+        """Loads of the fingers that touch, and of what bears the body, as a linear one would have
+        them; none of one that gives way with time, which presses as a linear one does.
         """
         if len(snapshot.remembered_nodes):
             return ()
-        return tuple(
+        surface, firm = self.body.mesh.surface_nodes, snapshot.firmness
+        loads = [
             FingerLoad(
-                self.body.mesh.surface_nodes[finger.nodes],
-                finger.nodal_forces / snapshot.firmness,
+                surface[finger.nodes],
+                finger.nodal_forces / firm,
                 sticks=not len(finger.points),
                 by=self._setting(finger),
+                firmness=firm if self.body.is_free else 1.0,
             )
             for finger in snapshot.fingers
             if finger.touching and len(finger.nodes)
-        )
+        ]
+        if len(snapshot.borne_nodes):
+            loads += self._borne(snapshot)
+        return tuple(loads)
+
+    def _borne(self, snapshot: Snapshot) -> list[FingerLoad]:
+        """Loads of the supports: each of the force on the nodes that are nearest to it."""
+        nodes = self.body.mesh.surface_nodes[snapshot.borne_nodes]
+        forces = snapshot.borne_forces / snapshot.firmness
+        if not self.supports:
+            return [FingerLoad(nodes, forces)]
+        placement = Pose(*snapshot.placement)
+        centre = placement.to_world(self.body.inertia.centre)
+        size = float(np.ptp(self.body.mesh.nodes, axis=0).max())
+        laid = [as_tool(support, centre, size) for support in self.supports]
+        by = [(tool, placement.pose_to_tool(pose)) for tool, pose in laid]
+        places = self.body.mesh.nodes[nodes]
+        away = [tool.distance(pose.to_tool(places))[0] for tool, pose in by]
+        nearest = np.argmin(away, axis=0)
+        return [
+            FingerLoad(
+                nodes[own], forces[own], by=Setting(*one, self.body), firmness=snapshot.firmness
+            )
+            for number, one in enumerate(by)
+            if (own := nearest == number).any()
+        ]
 
     def _setting(self, finger: FingerSnapshot) -> Setting | None:
         if self.tool is None or not len(finger.points):

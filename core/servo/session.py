@@ -133,7 +133,9 @@ def drawn_loads(snapshot: Snapshot) -> list[tuple[NDArray[np.int64], NDArray[np.
     fingers = snapshot.fingers
     firm = snapshot.firmness
     loads = [(finger.nodes, finger.nodal_forces / firm) for finger in fingers if len(finger.nodes)]
-    borne = [(snapshot.borne_nodes, snapshot.borne_forces)] if len(snapshot.borne_nodes) else []
+    borne = (
+        [(snapshot.borne_nodes, snapshot.borne_forces / firm)] if len(snapshot.borne_nodes) else []
+    )
     return loads + borne
 
 

@@ -91,6 +91,9 @@ class Meeting:
         linear = self.body.deform(*_joined(loads), 1.0)
         if isinstance(self.shape, LinearShape) or not loads:
             return Met(linear, linear, 0.0)
+        if self.body.is_free:
+            # As a whole it is where what touches it is.
+            return Met(self.shape.displacements(*_joined(loads), 1.0), linear, 0.0)
         wanted = self._places(loads, linear)
         self._recognise(loads, wanted)
         if self._wanted is not None and not self._gave_up:

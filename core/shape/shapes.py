@@ -114,8 +114,7 @@ class LinearShape(Shape):
 # How each is made, of a body and the file it came from, beside which tables may be kept.
 MAKERS: dict[ShapeName, Callable[[SoftBody, Path | None], Shape]] = {
     "linear": lambda body, _: LinearShape(body),
-    # What nobody holds has no rest to be relaxed to.
-    "real": lambda body, _: LinearShape(body) if body.is_free else RotationStrainShape(body),
+    "real": lambda body, _: RotationStrainShape(body),
     "paper": PaperShape,
 }
 
@@ -149,7 +148,7 @@ def shape(body: SoftBody, choice: str, body_file: Path | None = None) -> Shape:
 
 def is_felt(body: SoftBody) -> bool:
     """Whether *real* tells a body's force, too: it does on the body's own nodes alone."""
-    return not body.is_free and len(body.mesh.nodes) - len(body.fixed) <= MOST_FELT
+    return len(body.mesh.nodes) - len(body.fixed) <= MOST_FELT
 
 
 def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:

@@ -48,7 +48,7 @@ class Alone:
     @property
     def rest(self) -> Rest:
         """Where it is now, and what touches it."""
-        return self.free.resting.rest
+        return self.free.firm.rests[0]
 
     @property
     def young_modulus(self) -> float:
@@ -87,7 +87,7 @@ class Alone:
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals."""
-        self.free.resting.lead(goals)
+        self.free.firm.lead(goals)
 
     def touches(self) -> tuple[ToolTouch, ...]:
         """Of the tools, in the body's own axes."""
@@ -101,7 +101,7 @@ class Alone:
         PalpateError
             A force is no number.
         """
-        self.free.resting.hurry(seconds)
+        self.free.firm.hurry(seconds)
 
     def now(self, bent: NDArray[np.float64] | None = None) -> list[Lying]:
         """Where it is now; ``bent`` (n, 3) displaces its free surface nodes besides, metres."""
@@ -127,7 +127,7 @@ class Alone:
             It does not.
         """
         self._drop()
-        return self.free.resting.settle_on(ticks)
+        return self.free.firm.settle_on(ticks)
 
     def _drop(self) -> None:
         """Leave out a long way down, where no hand has it."""

@@ -21,12 +21,13 @@ from ...core.rest.grip import Grip
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
+from ...core.shape.firm_rest import FirmRest
 from ...core.shape.shapes import shape_name
 from ..layer import layers, stack
 from ..object.drawn_body import DrawnBody
 from ..played import mesh_cache
 from ..scene.body_frame import BodyFrame
-from ..shape.drawn_shape import chosen_shape
+from ..shape.drawn_shape import chosen_shape, kept_shape
 from .placement import frame_at, placement_of
 from .supports import Supports, supports_of
 
@@ -73,13 +74,18 @@ class FreeBody:
     drawn : the body, and its object as it was at first.
     supports : what it rests on.
     settings : of its motion.
-    resting : its equilibrium.
+    firm : its equilibrium, by its law.
     """
 
     drawn: DrawnBody
     supports: Supports
     settings: RestSettings
-    resting: Resting
+    firm: FirmRest[Resting]
+
+    @property
+    def resting(self) -> Resting:
+        """The linear body that presses back as it does."""
+        return self.firm.lying
 
     def touched_by(self, tools: Sequence[tuple[Tool | Grip, Pose]], placement: Pose) -> FreeBody:
         """The same body at a placement, pressed by tools or held by grips, with their poses in the
@@ -97,8 +103,9 @@ class FreeBody:
             placement=placement,
             settings=self.settings,
         )
+        resting.firm(self.resting.firmness)
         resting.come_in()
-        return replace(self, resting=resting)
+        return replace(self, firm=FirmRest(resting, self.firm.shapes))
 
     def settle(self) -> Lying:
         """Where it comes to rest.
@@ -108,7 +115,7 @@ class FreeBody:
         PalpateError
             It does not.
         """
-        self.resting.settle()
+        self.firm.settle()
         return self.now()
 
     def come_down(self) -> Lying:
@@ -132,12 +139,13 @@ class FreeBody:
         gap = self.supports.gap_beneath(nodes) if x == y == 0.0 and z < 0.0 else 0.0
         if max(self.drawn.size, height) < gap < np.inf:
             down = np.array([0.0, 0.0, height - gap])
+            self.firm.forget()
             self.resting.place(replace(placement, position=placement.position + down))
 
     def now(self, bent: Array | None = None) -> Lying:
         """Where it is now; ``bent`` (n, 3) displaces its free surface nodes besides, metres."""
-        rest, touches = self.resting.rest, self.resting.tool_touches()
-        displacements = rest.displacements(self.resting.young_modulus)
+        (rest,), touches = self.firm.rests, self.resting.tool_touches()
+        displacements = rest.displacements()
         if bent is not None:
             displacements = displacements + bent
         drawn = self.drawn
@@ -181,7 +189,9 @@ def lie(
         settings=settings,
     )
     resting.come_in()
-    return FreeBody(drawn, supports, settings, resting)
+    shape = kept_shape(thing, drawn)
+    shape.wait_for(drawn.body.mesh.surface_nodes[:1])
+    return FreeBody(drawn, supports, settings, FirmRest(resting, [shape]))
 
 
 def scene_gravity(scene: bpy.types.Scene) -> tuple[float, float, float]:

@@ -21,7 +21,9 @@ from ...core.pile.pile_settings import PileSettings
 from ...core.rest.rest import Rest
 from ...core.rest.support import Floor, Support
 from ...core.servo.session import Body, PropAmong
+from ...core.shape.firm_rest import FirmRest
 from ..object.drawn_body import DrawnBody
+from ..shape.drawn_shape import kept_shape
 from .free_body import Lying, chosen_body, scene_gravity, supports_under
 from .placement import frame_at, placement_of
 from .supports import Supports
@@ -35,15 +37,20 @@ class FreePile:
     ----------
     drawn : the bodies, and their objects as they were at first.
     supports : what all rest on.
-    pile : their equilibrium.
+    firm : their equilibrium, by their laws.
     bodies : the same at the objects' densities and Young's moduli.
     """
 
     drawn: tuple[DrawnBody, ...]
     supports: Supports
-    pile: Pile
+    firm: FirmRest[Pile]
     bodies: tuple[SoftBody, ...]
     _settings: PileSettings
+
+    @property
+    def pile(self) -> Pile:
+        """The linear bodies that press back as they do."""
+        return self.firm.lying
 
     @property
     def size(self) -> float:
@@ -53,7 +60,7 @@ class FreePile:
     @property
     def rest(self) -> Rest:
         """Where the first one is now, and what touches it."""
-        return self.pile.rest[0]
+        return self.firm.rests[0]
 
     @property
     def young_modulus(self) -> float:
@@ -94,12 +101,13 @@ class FreePile:
         here = self.placements if placements is None else placements
         laid = list(zip(self.bodies, here, strict=True))
         pile = Pile(laid, borne.all, tools, settings=self._settings)
+        pile.firm(self.pile.firmness)
         pile.come_in()
-        return replace(self, supports=borne, pile=pile)
+        return replace(self, supports=borne, firm=FirmRest(pile, self.firm.shapes))
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals."""
-        self.pile.lead(goals)
+        self.firm.lead(goals)
 
     def touches(self) -> tuple[ToolTouch, ...]:
         """Of the tools with the first one, in its own axes."""
@@ -113,7 +121,7 @@ class FreePile:
         PalpateError
             A force is no number.
         """
-        self.pile.tick(seconds)
+        self.firm.hurry(seconds)
 
     def settle(self) -> list[Lying]:
         """Where they come to rest, one after the other.
@@ -123,7 +131,7 @@ class FreePile:
         PalpateError
             They do not.
         """
-        self.pile.settle()
+        self.firm.settle()
         return self.now()
 
     def settle_on(self, ticks: int) -> bool:
@@ -134,7 +142,7 @@ class FreePile:
         PalpateError
             They do not.
         """
-        return self.pile.settle_on(ticks)
+        return self.firm.settle_on(ticks)
 
     def now(self, bent: NDArray[np.float64] | None = None) -> list[Lying]:
         """Where they are now; ``bent`` (n, 3) displaces the free surface nodes of the first one
@@ -143,7 +151,7 @@ class FreePile:
         bends = [bent, *[None] * (len(self.drawn) - 1)]
         return [
             self._lying(number, rest, one)
-            for number, (rest, one) in enumerate(zip(self.pile.rest, bends, strict=True))
+            for number, (rest, one) in enumerate(zip(self.firm.rests, bends, strict=True))
         ]
 
     def _lying(self, number: int, rest: Rest, bent: NDArray[np.float64] | None) -> Lying:
@@ -202,7 +210,10 @@ def piled(
     laid = list(zip(bodies, placements, strict=True))
     pile = Pile(laid, supports.all, fingertips=fingertips, settings=settings)
     pile.come_in()
-    return FreePile(tuple(opened), supports, pile, tuple(bodies), settings)
+    shapes = [kept_shape(thing, drawn) for thing, drawn in zip(things, opened, strict=True)]
+    for shape, drawn in zip(shapes, opened, strict=True):
+        shape.wait_for(drawn.body.mesh.surface_nodes[:1])
+    return FreePile(tuple(opened), supports, FirmRest(pile, shapes), tuple(bodies), settings)
 
 
 def supports_of_all(

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import bpy
@@ -12,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import Pose
+from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ...core.rest.prop import WORLD
 from ...core.servo.firming import Firming
@@ -26,11 +25,13 @@ from ...core.servo.session import (
     native_tool,
     servo_on,
 )
+from ...core.servo.settings import Settings
 from ...core.shape.shapes import Shape
 from ...simulated.simulated_process import SimulatedDevice
 from ..device import device_source
 from ..device.device_source import DeviceFrame
 from ..device.loop_figures import LoopFigures
+from ..device.servo_errors import servo_errors
 from ..lying.pressed.pressed_prop import PressedProp
 from ..object.drawn_body import DrawnBody
 from ..record import recording
@@ -67,8 +68,8 @@ class ForceLoop:
     _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        slides = not self.settings.servo.static_friction
-        self.firming = Firming(self.servo, self.drawn.body, self.tip.tool if slides else None)
+        supports = () if self.prop is None else self.prop.supports
+        self.firming = Firming(self.servo, self.drawn.body, self._sliding, supports)
 
     @classmethod
     def prepare(
@@ -94,12 +95,9 @@ class ForceLoop:
             touched, laid = native_body(drawn.body, whole=is_whole), None
         else:
             touched, laid = prop.native
-        moves = prop is not None
-        begun = settings.servo
-        if moves and tip.tool is None:
-            begun = replace(begun, relaxation=())
+        begun = _under(settings.servo, tip, prop)
         servo = servo_on(touched, begun, rate_hz=rate_hz, prop=laid)
-        recorder = Recorder(servo, rate_hz, in_world=moves)
+        recorder = Recorder(servo, rate_hz, in_world=prop is not None)
         return cls(servo, settings, recorder, drawn, touched, tip, prop)
 
     def give_tools(self, fingers: int) -> None:
@@ -210,13 +208,16 @@ class ForceLoop:
         self._turns[finger] = np.array(turn)
         self._set()
 
+    @property
+    def _sliding(self) -> Tool | None:
+        """The tool; none where friction holds it on a pinned body."""
+        sticks = self.settings.servo.static_friction and self.prop is None
+        return None if sticks else self.tip.tool
+
     def _set(self) -> None:
         turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
-        chosen = self.settings.servo
-        self.firming.tool = None if chosen.static_friction else self.tip.tool
-        if self.prop is not None and self.tip.tool is None:
-            # Under points what moves does not give way with time as it should.
-            chosen = replace(chosen, relaxation=())
+        chosen = _under(self.settings.servo, self.tip, self.prop)
+        self.firming.tool = self._sliding
         self.servo.set(replace(chosen, enabled=self._enabled, orientations=turns))
 
     def carry_out(self, effect: SetDown | Move | SwitchForce) -> None:
@@ -256,6 +257,11 @@ class ForceLoop:
                     simulated.stop()
 
 
+def _under(chosen: Settings, tip: FingerTip, prop: PressedProp | None) -> Settings:
+    """Settings under a tip: under points what moves does not give way with time as it should."""
+    return replace(chosen, relaxation=()) if prop is not None and tip.tool is None else chosen
+
+
 def _device_at(
     port: str, baud: int, frame: DeviceFrame, haply_model: str | None, at_rest: bool
 ) -> LinkDevice | HaplyDevice:
@@ -278,21 +284,3 @@ def _device_at(
         translation=frame.translation,
         scale=frame.scale,
     )
-
-
-@contextmanager
-def servo_errors() -> Iterator[None]:
-    """Raise the servo's errors as PalpateError with a remedy."""
-    try:
-        yield
-    except OSError as problem:
-        # Has its own remedy.
-        raise PalpateError("device: {problem}", problem=problem) from problem
-    except (ValueError, OverflowError) as problem:
-        raise PalpateError(
-            "servo: {problem}; set it back and press again", problem=problem
-        ) from problem
-    except RuntimeError as problem:
-        raise PalpateError(
-            "servo: {problem}; leave with Escape and press again", problem=problem
-        ) from problem

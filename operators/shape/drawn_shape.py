@@ -189,9 +189,16 @@ def found_behind(thing: bpy.types.Object, drawn: DrawnBody) -> FoundBehind | Non
     return FoundBehind(drawn.body, _last_real(drawn.at_rest), thing.palpate.young_modulus)
 
 
-@lru_cache(maxsize=1)
+def kept_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Shape:
+    """The chosen shape of an object that nobody holds, which has none of the paper's."""
+    if shape_name(chosen_shape(thing)) == "real":
+        return _last_real(drawn.at_rest)
+    return LinearShape(drawn.at_rest)
+
+
+@lru_cache(maxsize=16)
 def _last_real(body: SoftBody) -> Shape:
-    """Prepared once for the many strokes on an object."""
+    """Prepared once for the many strokes on an object, and on those beside it."""
     return shape(body, "real")
 
 

@@ -13,7 +13,7 @@ from ...mesh.tet_mesh import TetMesh
 from ...progress import Progress, unwatched
 from ...stiffness.held_pins import free_or_pinned
 from ..free_body.hold import held
-from ..free_body.inertia import RigidMotions
+from ..free_body.inertia import Inertia, RigidMotions
 from ..ordering.dissection import dissect
 from ..ordering.postorder import with_least_held
 from ..ordering.symbolic import SymbolicFactor, analyse
@@ -126,7 +126,7 @@ def _planned(
     loaded = np.zeros(len(free), dtype=bool)
     loaded[np.searchsorted(free, free_surface)] = True
     progress(0.0)
-    matrix = free_blocks(held(mesh, stiffness) if is_free else stiffness, free)
+    matrix = free_blocks(held(mesh.nodes, stiffness) if is_free else stiffness, free)
     progress(0.0)
     edges = matrix.edges
     dissection = dissect(edges, mesh.nodes[free], loaded, progress=progress)
@@ -142,5 +142,5 @@ def _planned(
     matrix = matrix.upper_half(symbolic.place)
     progress(1.0)
     ranks = np.searchsorted(free_surface, free[symbolic.loaded])
-    motions = RigidMotions.of(mesh) if is_free else None
+    motions = RigidMotions.of(Inertia.of(mesh), mesh.nodes) if is_free else None
     return EliminationPlan(free_surface, matrix, symbolic, ranks, itemsize, motions)

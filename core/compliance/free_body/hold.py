@@ -6,32 +6,41 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_array, csr_array
 
-from ...mesh.tet_mesh import TetMesh
+
+def held(points: NDArray[np.float64], stiffness: csr_array) -> csr_array:
+    """Stiffness (3N, 3N) of all nodes, at ``points`` (N, 3), with :func:`hold`."""
+    nodes, springs = hold(points, float(np.median(stiffness.diagonal())))
+    starts = np.searchsorted(nodes, np.arange(len(points) + 1))
+    ground = bsr_array((springs, nodes, starts), shape=stiffness.shape)
+    firm: csr_array = (stiffness + ground.tocsr()).tocsr()
+    return firm
 
 
-def held(mesh: TetMesh, stiffness: csr_array) -> csr_array:
-    """Stiffness with six springs to the ground: three at a node, two at another, one at a third.
+def hold(
+    points: NDArray[np.float64], firmness: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Six springs to the ground: three at a node, two at another, one at a third.
 
     The nodes lie far apart. Six springs that stop all rigid motion cannot hold loads that balance:
-    their forces are zero, however firm they are; they are as firm as a node of the body.
+    their forces are zero, however firm they are.
 
     Parameters
     ----------
-    mesh : the body, of one piece.
-    stiffness : (3N, 3N) of all nodes.
+    points : (N, 3), nodes of a body of one piece.
+    firmness : of each spring, as of a node of the body.
+
+    Returns
+    -------
+    the nodes (3,), ascending, and their springs' stiffness (3, 3, 3).
     """
-    first, second, third = nodes = _far_apart(mesh.nodes)
-    along = _unit(mesh.nodes[second] - mesh.nodes[first])
-    normal = _unit(np.cross(along, mesh.nodes[third] - mesh.nodes[first]))
-    firmness = float(np.median(stiffness.diagonal()))
+    first, second, third = nodes = _far_apart(points)
+    along = _unit(points[second] - points[first])
+    normal = _unit(np.cross(along, points[third] - points[first]))
     springs = firmness * np.array(
         [np.eye(3), np.eye(3) - np.outer(along, along), np.outer(normal, normal)]
     )
     order = np.argsort(nodes)
-    starts = np.searchsorted(np.sort(nodes), np.arange(len(mesh.nodes) + 1))
-    hold = bsr_array((springs[order], np.array(nodes)[order], starts), shape=stiffness.shape)
-    firm: csr_array = (stiffness + hold.tocsr()).tocsr()
-    return firm
+    return np.array(nodes, dtype=np.int64)[order], springs[order]
 
 
 def _far_apart(points: NDArray[np.float64]) -> tuple[int, int, int]:

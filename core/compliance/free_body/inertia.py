@@ -39,8 +39,13 @@ class Inertia:
         quarters = np.repeat(mesh.tet_volumes / 4.0, 4)
         node_volumes = np.zeros(len(mesh.nodes))
         np.add.at(node_volumes, mesh.tets.ravel(), quarters)
-        centre = node_volumes @ mesh.nodes / node_volumes.sum()
-        arms = mesh.nodes - centre
+        return cls.at(mesh.nodes, node_volumes)
+
+    @classmethod
+    def at(cls, points: NDArray[np.float64], node_volumes: NDArray[np.float64]) -> Inertia:
+        """The inertia of masses at ``points`` (N, 3)."""
+        centre = node_volumes @ points / node_volumes.sum()
+        arms = points - centre
         spread = (node_volumes[:, None] * arms).T @ arms
         return cls(node_volumes, centre, np.trace(spread) * np.eye(3) - spread)
 
@@ -84,9 +89,23 @@ class RigidMotions:
     loads: NDArray[np.float64]
 
     @classmethod
-    def of(cls, mesh: TetMesh) -> RigidMotions:
-        """The motions of a mesh."""
-        inertia = Inertia.of(mesh)
+    def of(cls, inertia: Inertia, points: NDArray[np.float64]) -> RigidMotions:
+        """The motions of the nodes, at ``points`` (N, 3), whose inertia it is."""
         mixed = np.linalg.inv(np.linalg.cholesky(inertia.masses)).T
-        modes = (inertia.modes(mesh.nodes) @ mixed).reshape(-1, 6)
+        modes = (inertia.modes(points) @ mixed).reshape(-1, 6)
         return cls(modes, np.repeat(inertia.node_volumes, 3)[:, None] * modes)
+
+    @property
+    def of_nodes(self) -> NDArray[np.float64]:
+        """The motions node by node, (N, 3, 6)."""
+        return self.modes.reshape(-1, 3, 6)
+
+    def still(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacements (N, 3) without their rigid motion, P u."""
+        shares = self.loads.T @ displacements.ravel()
+        return displacements - (self.modes @ shares).reshape(-1, 3)
+
+    def balanced(self, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Forces (N, 3) with the loads of inertia that balance them, P^T f."""
+        shares = self.modes.T @ forces.ravel()
+        return forces - (self.loads @ shares).reshape(-1, 3)

@@ -72,6 +72,11 @@ class Pose:
         own: NDArray[np.float64] = (points - self.position) @ self.rotation
         return own
 
+    def pose_to_tool(self, pose: Pose) -> Pose:
+        """A pose in this one's frame."""
+        turned: NDArray[np.float64] = self.rotation.T @ pose.rotation
+        return Pose(self.to_tool(pose.position), turned)
+
 
 def facing(direction: Array, along: Array) -> Array:
     """Rotation (3, 3), tool to body, of a tool that lies in the direction ``direction`` (3,) of

@@ -21,6 +21,7 @@ from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad, Setting, on_free_nodes
 from .kept_out import Kept, kept_out, places_of
+from .lying import Loose
 from .relaxation import Relaxation
 
 Array = NDArray[np.float64]
@@ -73,12 +74,41 @@ def beside_tools(
     kept = kept_out(body, solid, relaxation, linear, moved if start is None else start)
     if kept is None or kept.left > ENOUGH:
         return None
+    return _beside(linear, kept, 0.5 * float((forces * moved).sum()))
+
+
+def between_tools(
+    body: SoftBody,
+    solid: FreeSolid,
+    relaxation: Relaxation,
+    loads: Sequence[FingerLoad],
+) -> Beside | None:
+    """A body that nothing holds where the tools of ``loads`` are, what bears it among them.
+
+    Their friction and its weight are as under the linear contact, as many times as the body was
+    firm there. None as of :func:`beside_tools`.
+    """
+    if solid.motions is None or any(load.by is None for load in loads):
+        return None
+    forces = on_free_nodes(solid, loads)
+    moved = solid.linear(forces)
+    loose, firmness = Loose.of(solid, solid.motions, loads), loads[0].firmness
+    kept = kept_out(body, solid, relaxation, loads, moved, loose, firmness)
+    if kept is None or kept.left > ENOUGH:
+        return None
+    energy = 0.5 * float((forces * moved).sum())
+    return _beside(loads, kept, energy, firmness * loose.friction)
+
+
+def _beside(
+    loads: Sequence[FingerLoad], kept: Kept, energy: float, friction: Array | float = 0.0
+) -> Beside | None:
     trust = min((kept.pressing - FEW_PLACES) / (MANY_PLACES - FEW_PLACES), 1.0)
     if trust <= 0.0:
         return None
-    along = _totals(linear)
-    share = float((kept.forces * along).sum()) / float((along * along).sum())
-    return Beside(share, trust, 0.5 * float((forces * moved).sum()), kept)
+    along = _totals(loads)
+    share = float(((kept.forces + friction) * along).sum()) / float((along * along).sum())
+    return Beside(share, trust, energy, kept)
 
 
 def _totals(loads: Sequence[FingerLoad]) -> Array:

@@ -30,13 +30,15 @@ class FingerLoad:
     """Load of one finger by the linear force law: forces (k, 3), N, on nodes (k,) of the mesh.
 
     ``sticks``: a point, which moves its place by all of its way; a tool's places may slide. ``by``:
-    the tool, where it is known and slides without friction.
+    the tool, where it is known and slides without friction. ``firmness``: how many times as firm
+    the body was under it, which tells what it weighs beside its forces.
     """
 
     nodes: NDArray[np.int64]
     forces: Array
     sticks: bool = False
     by: Setting | None = None
+    firmness: float = 1.0
 
     def times(self, share: float) -> FingerLoad:
         """With so much of its forces."""
@@ -66,6 +68,7 @@ def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: floa
         one.sticks == other.sticks
         and np.array_equal(one.nodes, other.nodes)
         and _meet_alike(one.by, other.by)
+        and abs(one.firmness - other.firmness) <= share * one.firmness
         and np.abs(one.forces - other.forces).sum() <= share * np.abs(one.forces).sum()
         for one, other in zip(loads, others, strict=True)
     )

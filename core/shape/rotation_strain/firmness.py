@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
-from .beside_tools import beside_tools
+from .beside_tools import beside_tools, between_tools
 from .finger_load import FingerLoad, on_free_nodes
-from .relaxation import Patterns, Relaxation, Rest
+from .linear_press import LinearPress, farthest_of
+from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
 
@@ -38,8 +39,6 @@ DEPTHS, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), 0.5, 0.75
 CLOSE, MOST_STEPS = 0.002, 600
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
-# What carries less than this share of a tool's heaviest node is not led by itself.
-LIGHTEST = 1e-3
 # Times as far as a linear body at most: beyond, it swings away from its tool instead of giving way.
 FARTHEST = 1.25
 # Bounds of what is believed.
@@ -80,6 +79,12 @@ class Firmness:
     def deepest(self) -> float:
         """G at the reach, and beyond."""
         return self.at(self.reach)
+
+    @property
+    def mean(self) -> float:
+        """The mean of G from none to the reach: what is held there over the linear energy."""
+        known = self.reach
+        return 1.0 + 2.0 / 3.0 * self.root * math.sqrt(known) + 0.5 * self.whole * known
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +127,8 @@ class FirmBody:
         energy = self._energy(loads) if loads else 0.0
         if not energy > 0.0:
             return LINEAR
+        if self.solid.motions is not None:
+            return replace(self._lying(loads, ahead), energy=energy)
         beside, trust = self._beside(loads, ahead)
         if trust == 1.0:
             return replace(beside, energy=energy)
@@ -157,24 +164,47 @@ class FirmBody:
         found = Pressed(_through(told), whole.energy, whole.kept.displacements)
         return found, whole.trust
 
+    def _lying(self, loads: Sequence[FingerLoad], ahead: float) -> Pressed:
+        """A body that nothing holds, between all that touches it: by its contact with them where
+        they are, and on the way there, and where that is not trusted, by all of their forces.
+        """
+        led = self._led([one.times(ahead) for one in loads])
+        known = led.firmness
+        energy = self._energy(loads)
+        found = between_tools(self.body, self.solid, self.relaxation, loads)
+        if found is None:
+            return led
+        # What its weight alone presses answers with that, however firm it is.
+        sums = np.array([load.forces.sum(axis=0) for load in loads])
+        weight = float(np.linalg.norm(sums.sum(axis=0)) / np.linalg.norm(sums, axis=1).sum())
+        share = (1.0 - weight) * found.share + weight * known.at(energy)
+        half = HALF * HALF * energy
+        through = _through([(half, known.at(half)), (energy, share)])
+        beside = Pressed(through, energy, found.kept.displacements)
+        return beside if found.trust == 1.0 else _between(led, beside, found.trust)
+
     def _led(self, loads: Sequence[FingerLoad]) -> Pressed:
         """By forces that lead it to where a linear body would be."""
-        whole = _Press.of(self, loads)
+        whole = LinearPress.of(self.solid, loads)
         known, rest = self._led_by(whole)
         if max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
-            others, other_rest = self._led_by(_Press.of(self, loads, by_nodes=True))
+            others, other_rest = self._led_by(LinearPress.of(self.solid, loads, by_nodes=True))
             if max(others) > max(known):
                 known, rest = others, other_rest
+        return self._told(whole, known, rest)
+
+    def _told(self, whole: LinearPress, known: dict[float, float], rest: Rest | None) -> Pressed:
+        """What G at some shares of the depth, and the rest at the deepest, tell of a press."""
         deepest = max(known)
         is_whole = deepest == DEPTHS[-1]
         told = [
             (depth * depth * whole.energy, known[depth])
             for depth in sorted({min(HALF, deepest), deepest} - {0.0})
         ]
-        moved = rest.displacements if rest is not None and is_whole else None
+        moved = whole.met(self.solid, rest.displacements) if rest and is_whole else None
         return Pressed(replace(_through(told), is_whole=is_whole), whole.energy, moved)
 
-    def _led_by(self, press: _Press) -> tuple[dict[float, float], Rest | None]:
+    def _led_by(self, press: LinearPress) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and the deepest."""
         known, rest = {0.0: 1.0}, None
         before = 0.0
@@ -184,7 +214,7 @@ class FirmBody:
             share = float(further.forces @ press.ways) / (depth * press.work)
             # A tool's force that falls is of a body that has turned aside, where a tool cannot go;
             # and so is a way far beyond the linear one, as of a wing that swings.
-            swings = _farthest(further.displacements) > FARTHEST * depth * press.farthest
+            swings = farthest_of(further.displacements) > FARTHEST * depth * press.farthest
             aside = press.is_of_tools and (depth * share < before or swings)
             if further.left > ENOUGH or aside:
                 break
@@ -222,57 +252,3 @@ def _through(known: Sequence[tuple[float, float]]) -> Firmness:
     found = np.linalg.solve(rows, [min(max(share, LEAST), MOST) - 1.0 for _, share in known])
     root, whole = [*found, 0.0][:2]
     return Firmness(root / math.sqrt(reach), whole / reach, reach)
-
-
-@dataclass(frozen=True, eq=False)
-class _Press:
-    """The linear press.
-
-    Attributes
-    ----------
-    patterns : what forces are made of.
-    ways : (p,), work of each on the linear displacement.
-    work : of as much of each as leads a linear body there, J/Pa.
-    energy : elastic, J/Pa.
-    farthest : way of a node, metres.
-    is_of_tools : and of no point.
-    """
-
-    patterns: Patterns
-    ways: Array
-    work: float
-    energy: float
-    farthest: float
-    is_of_tools: bool
-
-    @classmethod
-    def of(cls, body: FirmBody, loads: Sequence[FingerLoad], by_nodes: bool = False) -> _Press:
-        """Of these loads; ``by_nodes``: each node of a tool's is led by itself."""
-        patterns: list[Array] = []
-
-        def add(nodes: NDArray[np.int64], forces: Array) -> None:
-            whole = body.solid.on_free_nodes(nodes, forces)
-            if whole.any():
-                patterns.append(whole)
-
-        for load in loads:
-            if load.sticks:
-                for axis in np.eye(3):
-                    add(load.nodes, load.weights[:, None] * axis)
-            elif by_nodes:
-                sizes = np.linalg.norm(load.forces, axis=1)
-                for one in np.flatnonzero(sizes > LIGHTEST * sizes.max(initial=0.0)):
-                    add(load.nodes[[one]], load.forces[[one]])
-            else:
-                add(load.nodes, load.forces)
-        made = Patterns(np.stack(patterns), np.stack([body.solid.linear(one) for one in patterns]))
-        whole = on_free_nodes(body.solid, loads)
-        linear = body.solid.linear(whole)
-        ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
-        work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())
-        is_of_tools = not any(load.sticks for load in loads)
-        return cls(made, ways, work, energy, _farthest(linear), is_of_tools)
-
-
-def _farthest(displacements: Array) -> float:
-    return float(np.linalg.norm(displacements, axis=1).max())

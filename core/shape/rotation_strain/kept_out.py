@@ -21,7 +21,8 @@ from ...contact.near_field.surface_shape import face_areas, face_normals
 from ...contact.tool.native_tool import native_shape
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad, Setting, on_free_nodes
-from .relaxation import Relaxation
+from .lying import Loose
+from .relaxation import Relaxation, fields_of
 
 Array = NDArray[np.float64]
 
@@ -89,10 +90,13 @@ def kept_out(
     relaxation: Relaxation,
     loads: Sequence[FingerLoad],
     start: Array,
+    loose: Loose | None = None,
+    firmness: float = 1.0,
 ) -> Kept | None:
     """The body beside the tools of ``loads``; None where they are none or meet too much.
 
-    ``start``: linear displacements (f, 3) to begin from.
+    ``start``: linear displacements (f, 3) to begin from. ``loose``: how it goes as a whole between
+    them, and so many times its dead loads press it beside.
     """
     whole = [(load, load.by) for load in loads if load.by is not None]
     if len(whole) < len(loads):
@@ -114,6 +118,9 @@ def kept_out(
     moves = solid.free[free] == corners
     seen, known = np.unique(corners, return_inverse=True)
     local = np.searchsorted(mesh.surface_nodes, seen)
+    compliance = body.surface_blocks(local, local)
+    if loose is not None:
+        compliance = compliance + loose.compliance(np.searchsorted(solid.free, seen))
     linear, moved, pushes, left, steps = relaxation.native.kept_out(
         start,
         [(native_shape(by.tool), by.pose.position, by.pose.rotation) for _, by in whole],
@@ -125,10 +132,12 @@ def kept_out(
             FIRMNESS / usual_edge(body) * areas,
             which,
         ),
-        body.surface_blocks(local, local).reshape(-1, 3, 3),
+        compliance.reshape(-1, 3, 3),
         float((on_free_nodes(solid, loads) * start).sum()),
         CLOSE,
         MOST_STEPS,
+        None if loose is None else firmness * loose.dead,
+        None if loose is None else (*fields_of(loose.motions), loose.gives.tolist()),
     )
     forces = np.zeros((len(whole), 3))
     np.add.at(forces, which, pushes)

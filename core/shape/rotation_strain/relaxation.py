@@ -25,13 +25,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 
 from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
+from ...compliance.free_body.inertia import RigidMotions
 from ...errors import PalpateError
 from ...law.foam import Cells, Foam
 from ...law.law import Law
 from ...law.neo_hookean import NeoHookean
 from ...law.ogden import Ogden
 from ...law.principal import Power
-from ..solid.free_solid import FreeSolid
+from ..solid.free_solid import FreeSolid, linear_under
 from ..solid.springs import Springs
 from ..solid.strain_term import StrainTerm
 
@@ -95,10 +96,12 @@ class Relaxation:
     ----------
     native : it, prepared.
     factor : of the stiffness at rest.
+    motions : rigid ones of a body that nothing holds; None of others.
     """
 
     native: palpate_servo.Relaxation
     factor: CholeskyFactor
+    motions: RigidMotions | None = None
 
     @classmethod
     def of(
@@ -108,13 +111,15 @@ class Relaxation:
         factor: CholeskyFactor,
         positions: Array,
         springs: Springs | None = None,
+        motions: RigidMotions | None = None,
     ) -> Relaxation:
         """Relaxation of the terms of a solid on its free nodes, the first of which has shear.
 
         Parameters
         ----------
-        factor : of the stiffness of the terms and the springs.
+        factor : of the stiffness of the terms and the springs; without pins with a hold.
         positions : (f, 3), at rest.
+        motions : of a body without pins.
 
         Raises
         ------
@@ -124,15 +129,16 @@ class Relaxation:
         native = palpate_servo.Relaxation(
             [_entries(term) for term in terms],
             factor.flat(np.float32),
-            _poisson(terms[0], springs, positions).flat(np.float64, every=3),
+            _poisson(terms[0], springs, positions, motions).flat(np.float64, every=3),
             law=_powers(law),
             springs=None if springs is None else _rows(springs.matrix),
+            motions=None if motions is None else (*fields_of(motions), [0.0] * 6),
         )
-        return cls(native, factor)
+        return cls(native, factor, motions)
 
     def another(self) -> Relaxation:
         """The same, for another thread: what both read is shared."""
-        return Relaxation(self.native.another(), self.factor)
+        return Relaxation(self.native.another(), self.factor, self.motions)
 
     def relaxed(self, forces: Array, steps: int) -> Array:
         """Displacements (f, 3) of the free nodes under ``forces`` (f, 3), after so many steps.
@@ -186,12 +192,15 @@ class Relaxation:
 
     def linear(self, forces: Array) -> Array:
         """Linear displacements (f, 3), K^-1 F."""
-        return self.factor.solve(forces.ravel()).reshape(-1, 3)
+        return linear_under(self.factor, self.motions, forces)
 
 
 def relaxation(solid: FreeSolid) -> Relaxation:
     """Relaxation of a body on its own nodes."""
-    return Relaxation.of(solid.solid.terms, solid.solid.law, solid.factor, solid.positions)
+    inner = solid.solid
+    return Relaxation.of(
+        inner.terms, inner.law, solid.factor, solid.positions, motions=solid.motions
+    )
 
 
 def _entries(term: StrainTerm) -> tuple[NDArray[np.int64], NDArray[np.int64], Array, Array, Array]:
@@ -205,7 +214,16 @@ def _rows(matrix: csr_array) -> tuple[NDArray[np.int64], NDArray[np.int64], Arra
     return matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
 
 
-def _poisson(term: StrainTerm, springs: Springs | None, positions: Array) -> CholeskyFactor:
+def fields_of(motions: RigidMotions) -> tuple[list[Array], list[Array]]:
+    """Motions and loads, each (f, 3)."""
+    both = motions.modes, motions.loads
+    modes, loads = ([np.ascontiguousarray(one).reshape(-1, 3) for one in of.T] for of in both)
+    return modes, loads
+
+
+def _poisson(
+    term: StrainTerm, springs: Springs | None, positions: Array, motions: RigidMotions | None
+) -> CholeskyFactor:
     """Factor of the warp's equation, for three axes: each number of it three times.
 
     A domain counts by its volume and stiffness: what does not fit together strains what is soft.
@@ -214,6 +232,9 @@ def _poisson(term: StrainTerm, springs: Springs | None, positions: Array) -> Cho
     matrix = csr_array(term.gradients.T @ diags_array(weights) @ term.gradients)
     if springs is not None:
         matrix = csr_array(matrix + springs.matrix)
+    if motions is not None:
+        # What gradients ask for balances, so that one held node takes no force.
+        matrix[0, 0] += float(np.median(matrix.diagonal()))
     rows = np.repeat(np.arange(len(positions)), np.diff(matrix.indptr))
     elimination = RepeatedElimination.of(rows, matrix.indices.astype(np.int64), positions)
     return elimination.factor(matrix.data[:, None, None] * np.eye(3))

@@ -19,6 +19,7 @@ from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad, alike
 from .firmness import LINEAR, FirmBody, Pressed
+from .lying import met
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
@@ -198,7 +199,12 @@ class _OnOwnNodes:
         self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         held = self.solid.on_free_nodes(nodes, forces)
-        return self.relaxation.relaxed(held, self.steps)[self.solid.surface]
+        seen = self.solid.surface
+        moved = self.relaxation.relaxed(held, self.steps)[seen]
+        if self.solid.motions is None:
+            return moved
+        linear = self.firm.body.deform(nodes, forces, 1.0)
+        return met(self.solid.motions.of_nodes[seen], moved, linear, held[seen])
 
 
 @dataclass(frozen=True, eq=False)

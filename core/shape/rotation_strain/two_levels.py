@@ -24,11 +24,14 @@ from scipy.sparse import csr_array
 
 from ...body.soft_body import SoftBody
 from ...compliance.elimination.cholesky import CholeskyFactor, RepeatedElimination
+from ...compliance.free_body.hold import held
+from ...compliance.free_body.inertia import Inertia, RigidMotions
 from ...law.of_material import law_of
 from ...stiffness.assembly import lame_parameters
-from ...stiffness.held_pins import pins_checked
-from .coarse_solid import CoarseSolid, by_axes, spring_of_each
-from .lattice import lattice_of
+from ...stiffness.held_pins import free_or_pinned
+from ..lattice.coarse_solid import CoarseSolid, by_axes, spring_of_each
+from ..lattice.lattice import Lattice, lattice_of
+from .lying import met
 from .relaxation import Relaxation
 
 Array = NDArray[np.float64]
@@ -49,12 +52,14 @@ class TwoLevels:
     following : csr (c, n), its transpose times the springs by which the lattice follows.
     follow : factor by which the lattice's displacements come from forces on it.
     relaxation : of the lattice.
+    modes : (n, 3, 6), rigid motions of the free surface of a body without pins.
     """
 
     surface: csr_array
     following: csr_array
     follow: CholeskyFactor
     relaxation: Relaxation
+    modes: Array | None = None
 
     @classmethod
     def of(cls, body: SoftBody, most_nodes: int) -> TwoLevels:
@@ -63,9 +68,9 @@ class TwoLevels:
         Raises
         ------
         PalpateError
-            The pins do not hold the body.
+            The pins do not hold the body, or it is of several pieces without any.
         """
-        pins_checked(body.mesh, body.fixed)
+        free_or_pinned(body.mesh, body.fixed)
         mesh, seen = body.mesh, body.compliance.free_surface
         lattice = lattice_of(mesh, most_nodes)
         law = law_of(body.poisson_ratio, body.law)
@@ -79,11 +84,14 @@ class TwoLevels:
         following = csr_array(surface.T).multiply(springs).tocsr()
         at_rest = coarse.stiffness
         followed = _factor(at_rest + by_axes(csr_array(following @ surface)), lattice.positions)
-        solved = _factor(at_rest, lattice.positions)
+        motions = _motions(body, lattice) if body.is_free else None
+        at_hold = at_rest if motions is None else held(lattice.positions, at_rest)
+        solved = _factor(at_hold, lattice.positions)
         relaxation = Relaxation.of(
-            coarse.solid.terms, coarse.solid.law, solved, lattice.positions, coarse.springs
+            coarse.solid.terms, coarse.solid.law, solved, lattice.positions, coarse.springs, motions
         )
-        return cls(surface, following, followed, relaxation)
+        modes = body.inertia.modes(mesh.nodes[seen]) if body.is_free else None
+        return cls(surface, following, followed, relaxation, modes)
 
     def corrected(
         self,
@@ -101,12 +109,29 @@ class TwoLevels:
         steps : towards equilibrium.
         """
         load = self.surface[places].T @ forces
+        motions = self.relaxation.motions
+        if motions is not None:
+            load = motions.balanced(load)
         v = self.follow.solve((load + self.following @ linear).ravel()).reshape(-1, 3)
-        held = load + self.following @ (linear - self.surface @ v)
-        dead = _stiffer(held, load, v) * load
-        w = self.relaxation.relaxed_from(v, dead, steps, held - dead)
+        keeping = load + self.following @ (linear - self.surface @ v)
+        dead = _stiffer(keeping, load, v) * load
+        if motions is not None:
+            v = motions.still(v)
+        w = self.relaxation.relaxed_from(v, dead, steps, keeping - dead)
         moved: Array = linear + self.surface @ (w - v)
-        return moved
+        if self.modes is None:
+            return moved
+        pressed = np.zeros_like(linear)
+        np.add.at(pressed, places, forces)
+        return met(self.modes, moved, linear, pressed)
+
+
+def _motions(body: SoftBody, lattice: Lattice) -> RigidMotions:
+    """Rigid motions of a lattice whose nodes carry the mass of the body's."""
+    mesh = body.mesh
+    carried = lattice.interpolation(mesh.nodes, lattice.node_parts)
+    masses = np.maximum(carried.T @ body.inertia.node_volumes, 0.0)
+    return RigidMotions.of(Inertia.at(lattice.positions, masses), lattice.positions)
 
 
 def _stiffer(held: Array, load: Array, moved: Array) -> float:

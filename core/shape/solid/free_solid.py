@@ -1,4 +1,8 @@
-"""A body with its pins, ready for solves: what free nodes feel, and the factored stiffness."""
+"""A body ready for solves: what its free nodes feel, and the factored stiffness.
+
+One without pins is solved for the loads of inertia that make forces balance, as its compliance is
+(:mod:`...compliance.free_body`), and its displacements have no rigid motion.
+"""
 
 from __future__ import annotations
 
@@ -15,10 +19,12 @@ from ...compliance.elimination.cholesky import (
     NotPositiveDefiniteError,
     RepeatedElimination,
 )
+from ...compliance.free_body.hold import hold
+from ...compliance.free_body.inertia import RigidMotions
 from ...errors import PalpateError
 from ...law.law import Law
 from ...law.of_material import law_of
-from ...stiffness.held_pins import pins_checked
+from ...stiffness.held_pins import free_or_pinned
 from .solid import Solid, solid
 from .strain_term import StrainTerm
 
@@ -35,12 +41,14 @@ class FreeSolid:
     free : int64 (f,), node numbers of the mesh, ascending.
     surface : int64 (n,), the places in ``free`` of ``body.compliance.free_surface``.
     positions : (f, 3), at rest, metres.
+    motions : rigid ones of a body without pins; None of others.
     """
 
     solid: Solid
     free: NDArray[np.int64]
     surface: NDArray[np.int64]
     positions: NDArray[np.float64]
+    motions: RigidMotions | None = None
 
     @classmethod
     def of(cls, body: SoftBody, law: Law | None = None) -> FreeSolid:
@@ -54,7 +62,7 @@ class FreeSolid:
             As :func:`.solid.solid`, and where the pins do not hold the body.
         """
         mesh = body.mesh
-        pins_checked(mesh, body.fixed)
+        free_or_pinned(mesh, body.fixed)
         own_law = law_of(body.poisson_ratio, body.law) if law is None else law
         whole = solid(mesh, body.poisson_ratio, own_law, body.formulation, body.young_scale)
         free = np.setdiff1d(np.arange(len(mesh.nodes)), body.fixed)
@@ -65,7 +73,8 @@ class FreeSolid:
             for term in whole.terms
         )
         surface = np.searchsorted(free, body.compliance.free_surface)
-        return cls(Solid(terms, len(free), own_law), free, surface, mesh.nodes[free])
+        motions = RigidMotions.of(body.inertia, mesh.nodes) if body.is_free else None
+        return cls(Solid(terms, len(free), own_law), free, surface, mesh.nodes[free], motions)
 
     @property
     def node_count(self) -> int:
@@ -90,7 +99,7 @@ class FreeSolid:
 
     def linear(self, nodal_forces: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacements (f, 3) that linear elasticity gives for forces (f, 3), K^-1 F."""
-        return self.factor.solve(nodal_forces.ravel()).reshape(-1, 3)
+        return linear_under(self.factor, self.motions, nodal_forces)
 
     @cached_property
     def rest_blocks(self) -> NDArray[np.float64]:
@@ -110,7 +119,8 @@ class FreeSolid:
 
     @cached_property
     def factor(self) -> CholeskyFactor:
-        """The factor of K, for :meth:`~CholeskyFactor.solve` with (3f,) or (3f, k).
+        """The factor of K, for :meth:`~CholeskyFactor.solve` with (3f,) or (3f, k); without pins
+        that of K with a hold whose forces vanish where loads balance.
 
         Solves only read it, so that several threads may share it.
 
@@ -120,12 +130,23 @@ class FreeSolid:
             The pins do not hold the body.
         """
         try:
-            return self.elimination.factor(self.rest_blocks)
+            return self.elimination.factor(self._held_blocks)
         except NotPositiveDefiniteError:
             raise PalpateError(
                 "stiffness: the body is not held by its pins, as far as its numbers tell; pin "
                 "every part at three nodes that are not on a line, and bake again"
             ) from None
+
+    @property
+    def _held_blocks(self) -> NDArray[np.float64]:
+        if self.motions is None:
+            return self.rest_blocks
+        pattern, blocks = self.solid.pattern, self.rest_blocks.copy()
+        own = np.flatnonzero(pattern.rows == pattern.columns)
+        firmness = float(np.median(np.einsum("mii->mi", blocks[own])))
+        for node, springs in zip(*hold(self.positions, firmness), strict=True):
+            blocks[own[pattern.rows[own] == node]] += springs
+        return blocks
 
     def on_free_nodes(
         self, nodes: NDArray[np.int64], nodal_forces: NDArray[np.float64]
@@ -140,6 +161,15 @@ class FreeSolid:
         forces = np.zeros((self.node_count, 3))
         np.add.at(forces, places[held], np.asarray(nodal_forces)[held])
         return forces
+
+
+def linear_under(
+    factor: CholeskyFactor, motions: RigidMotions | None, forces: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Linear displacements (f, 3) under forces (f, 3); ``motions`` are a free body's."""
+    if motions is None:
+        return factor.solve(forces.ravel()).reshape(-1, 3)
+    return motions.still(factor.solve(motions.balanced(forces).ravel()).reshape(-1, 3))
 
 
 def _columns(gradients: csr_array, nodes: NDArray[np.int64]) -> csr_array:

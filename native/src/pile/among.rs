@@ -69,17 +69,22 @@ impl Among {
         others.map(|member| member.placement)
     }
 
-    /// What it can give back, J: by the weight of all bodies, from the height of the world's origin on,
-    /// and by what others than fingers hold in them.
-    pub fn stored(&self) -> f64 {
-        let raised = self.pile.members.iter().filter_map(|member| {
-            let free = member.free?;
-            let centre = member.placement.to_world(free.centre);
-            Some(free.mass * self.pile.gravity.dot(centre))
-        });
-        let held = self.pile.contacts().iter();
-        let held = held.filter(|contact| !matches!(contact.against, Against::Finger(_)));
-        held.map(|contact| self.held(contact)).sum::<f64>() - raised.sum::<f64>()
+    /// What the weight of all bodies can give back, J, from the height of the world's origin on.
+    pub fn raised(&self) -> f64 {
+        let (members, gravity) = (self.pile.members.iter(), self.pile.gravity);
+        members.map(|member| member.raised(gravity)).sum()
+    }
+
+    /// What others than fingers hold in all bodies, J.
+    pub fn held(&self) -> f64 {
+        let is_other = |contact: &&Contact| !matches!(contact.against, Against::Finger(_));
+        let others = self.pile.contacts().iter().filter(is_other);
+        others.map(|contact| self.held_by(contact)).sum()
+    }
+
+    /// The elastic energy in the touched body, J.
+    pub fn elastic(&self) -> f64 {
+        self.pile.members[TOUCHED].elastic()
     }
 
     /// How many bodies there are, the touched one among them.
@@ -210,7 +215,7 @@ impl Among {
             if contact.anchor.is_some() && !contact.slips {
                 stuck += contact.push;
             }
-            felt.energy += self.held(contact);
+            felt.energy += self.held_by(contact);
             felt.pressed += 1;
             if is_touched {
                 collider.take(slot);
@@ -235,7 +240,7 @@ impl Among {
     }
 
     /// What a contact holds in its bodies and in the spring before it, where what it meets is now, J.
-    fn held(&self, contact: &Contact) -> f64 {
+    fn held_by(&self, contact: &Contact) -> f64 {
         if contact.push <= 0.0 {
             return 0.0;
         }
@@ -250,11 +255,8 @@ impl Among {
         let elastic = moved(contact.body) + contact.other().map_or(DVec3::ZERO, moved);
         let spring = contact.spring * contact.push;
         // What has just gone beyond an edge meets nothing any more.
-        let off = if contact.gap.is_finite() {
-            contact.gap + spring
-        } else {
-            0.0
-        };
+        let is_met = contact.gap.is_finite();
+        let off = if is_met { contact.gap + spring } else { 0.0 };
         0.5 * (contact.force().dot(elastic) + spring * contact.push) - off * contact.push
     }
 

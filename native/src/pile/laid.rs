@@ -40,11 +40,34 @@ impl Lying {
         }
     }
 
-    /// What it can give back, J.
-    pub fn stored(&self) -> f64 {
+    /// What holds energy in it, and in others, beside fingers.
+    pub fn held(&self) -> Beside {
         match self {
-            Self::Alone(prop) => prop.stored(),
-            Self::Among(among) => among.stored(),
+            Self::Alone(prop) => Beside {
+                held: prop.held(),
+                own: None,
+            },
+            Self::Among(among) => Beside {
+                held: among.held(),
+                own: Some(among.elastic()),
+            },
         }
     }
+
+    /// What its weight can give back, and that of all others, J.
+    pub fn raised(&self) -> f64 {
+        match self {
+            Self::Alone(prop) => prop.raised(),
+            Self::Among(among) => among.raised(),
+        }
+    }
+}
+
+/// What holds energy in a body, and in others, beside its fingers, J.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside {
+    /// What all else than fingers holds.
+    pub held: f64,
+    /// All that is held in the body itself, where fingers hold some in others, too.
+    pub own: Option<f64>,
 }

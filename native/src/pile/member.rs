@@ -234,6 +234,12 @@ impl Member {
         held.sum::<f64>() * self.young_modulus
     }
 
+    /// What its weight can give back, J, from the height of the world's origin on.
+    pub(super) fn raised(&self, gravity: DVec3) -> f64 {
+        let lift = |free: FreeBody| free.mass * gravity.dot(self.placement.to_world(free.centre));
+        self.free.map_or(0.0, |free| -lift(free))
+    }
+
     /// Forces on its contact points, N in its frame.
     pub fn loads(&self) -> impl Iterator<Item = (u32, DVec3)> {
         let slots = self.slots().iter();

@@ -103,6 +103,14 @@ impl Pile {
         square(py, DMat3::from_quat(self.member(body)?.placement.rotation))
     }
 
+    fn set_young_modulus(&mut self, body: usize, young_modulus: f64) -> PyResult<()> {
+        let modulus = positive("young_modulus", young_modulus)?;
+        let _ = self.member(body)?;
+        self.settling = None;
+        self.inner.members[body].young_modulus = modulus;
+        Ok(())
+    }
+
     fn elastic(&self, body: usize) -> PyResult<f64> {
         Ok(self.member(body)?.elastic())
     }

@@ -8,8 +8,8 @@ use numpy::{AllowTypeChange, PyArrayLike3};
 use pyo3::prelude::*;
 
 use self::given::{
-    GivenFactor, GivenLaw, GivenPlaces, GivenSprings, GivenTerm, GivenTool, Numbers, Rows, factor,
-    table, unfit,
+    GivenFactor, GivenLaw, GivenMotions, GivenPlaces, GivenSprings, GivenTerm, GivenTool, Numbers,
+    Rows, factor, table, unfit,
 };
 use crate::python::vectors::{self, Matrix};
 use crate::servo::paced::locked;
@@ -28,13 +28,14 @@ pub struct Relaxation {
 #[pymethods]
 impl Relaxation {
     #[new]
-    #[pyo3(signature = (terms, stiffness, poisson, *, law=None, springs=None))]
+    #[pyo3(signature = (terms, stiffness, poisson, *, law=None, springs=None, motions=None))]
     fn new(
         terms: Vec<GivenTerm<'_>>,
         stiffness: GivenFactor<'_, f32>,
         poisson: GivenFactor<'_, f64>,
         law: Option<GivenLaw>,
         springs: Option<GivenSprings<'_>>,
+        motions: Option<GivenMotions<'_>>,
     ) -> PyResult<Self> {
         let (stiffness, poisson) = (factor(&stiffness)?, factor(&poisson)?);
         let nodes = poisson.len();
@@ -49,6 +50,9 @@ impl Relaxation {
         let springs = springs
             .map(|given| given::springs(&given, nodes))
             .transpose()?;
+        let gauge = motions
+            .map(|given| given::gauge(&given, nodes))
+            .transpose()?;
         let solid = Solid {
             strained: Strained {
                 terms: made,
@@ -59,6 +63,7 @@ impl Relaxation {
             },
             warp: Warp::new(weights, poisson),
             stiffness,
+            gauge,
         };
         Ok(Self::of(Arc::new(solid)))
     }
@@ -83,10 +88,10 @@ impl Relaxation {
         let mut relaxing = locked(&self.inner);
         let nodes = relaxing.solid().nodes();
         relaxing.linear = given::rows("linear", &linear, nodes)?;
-        let forces = given::rows("forces", &forces, nodes)?;
+        let mut forces = given::rows("forces", &forces, nodes)?;
         let mut pulled = vec![[0.0; 3]; nodes];
         relaxing.warp();
-        relaxing.pull_back(&forces, &mut pulled);
+        relaxing.pull_back(&mut forces, &mut pulled);
         table(py, &pulled)
     }
 
@@ -179,6 +184,7 @@ impl Relaxation {
         ))
     }
 
+    #[pyo3(signature = (linear, tools, places, compliance, work, close, most_steps, dead=None, loose=None))]
     #[expect(clippy::too_many_arguments, reason = "Python's names tell them apart")]
     fn kept_out<'py>(
         &self,
@@ -190,6 +196,8 @@ impl Relaxation {
         work: f64,
         close: f64,
         most_steps: usize,
+        dead: Option<Rows<'_>>,
+        loose: Option<GivenMotions<'_>>,
     ) -> PyResult<(Matrix<'py>, Matrix<'py>, Matrix<'py>, f64, usize)> {
         let nodes = self.nodes(py);
         let linear = given::rows("linear", &linear, nodes)?;
@@ -208,9 +216,15 @@ impl Relaxation {
             nodes,
         )
         .ok_or_else(unfit)?;
+        let dead = dead.map_or_else(
+            || Ok(vec![[0.0; 3]; nodes]),
+            |forces| given::rows("dead", &forces, nodes),
+        )?;
+        let loose = loose.map(|given| given::gauge(&given, nodes)).transpose()?;
         let (linear, warped, pushes, rest) = py.detach(|| {
             let mut relaxing = locked(&self.inner);
-            let rest = relaxing.keep_out(&linear, &mut against, (work, close), most_steps);
+            let load = (dead.as_slice(), &mut against);
+            let rest = relaxing.keep_out(&linear, load, loose, (work, close), most_steps);
             let pushes = against.pushes(&relaxing.warped);
             (
                 relaxing.linear.clone(),

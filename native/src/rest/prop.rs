@@ -43,13 +43,17 @@ impl Prop {
         std::ptr::eq(&raw const *self.body, body)
     }
 
-    /// What it can give back, J: by its weight, from the height of the world's origin on, and by what
-    /// its supports hold in it.
-    pub fn stored(&self) -> f64 {
-        let centre = self.placement.to_world(self.free.centre);
+    /// What its supports hold in it, J.
+    pub fn held(&self) -> f64 {
         let supports = self.supports.iter();
         let held = supports.filter_map(|support| support.collider.felt().ok());
-        held.map(|felt| felt.energy).sum::<f64>() - self.free.mass * self.gravity.dot(centre)
+        held.map(|felt| felt.energy).sum()
+    }
+
+    /// What its weight can give back, J, from the height of the world's origin on.
+    pub fn raised(&self) -> f64 {
+        let centre = self.placement.to_world(self.free.centre);
+        -self.free.mass * self.gravity.dot(centre)
     }
 
     /// Forces of its supports on its nodes, at unit modulus.

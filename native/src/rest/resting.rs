@@ -55,6 +55,11 @@ impl Resting {
         self.young_modulus
     }
 
+    /// Another one, from the next tick on, Pa.
+    pub fn set_young_modulus(&mut self, young_modulus: f64) {
+        self.young_modulus = young_modulus;
+    }
+
     /// Lays the body elsewhere: all that touches it is set down anew.
     pub fn place(&mut self, placement: Placement) {
         self.prop.placement = placement;

@@ -5,6 +5,7 @@ use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::control::firmness::Firmness;
 use crate::control::pressed::Pressed;
+use crate::pile::laid::Beside;
 use crate::servo::settings::{Firm, Moment, Settings};
 
 impl Servo {
@@ -27,17 +28,28 @@ impl Servo {
         })
     }
 
-    /// Keeps what the linear contact holds, and has fingers hold what goes with the firmness.
-    pub(super) fn hold(&mut self, moment: &Moment<'_>, pressed: &mut [Pressed; MAX_FINGERS]) {
-        let energy: f64 = pressed.iter().map(|finger| finger.energy).sum();
+    /// Keeps what the linear contact holds in the body, and has fingers hold what goes with the firmness; what
+    /// all else holds then, J.
+    pub(super) fn hold(
+        &mut self,
+        moment: &Moment<'_>,
+        pressed: &mut [Pressed; MAX_FINGERS],
+        beside: Beside,
+    ) -> f64 {
+        let fingers: f64 = pressed.iter().map(|finger| finger.energy).sum();
+        let energy = beside.own.unwrap_or(fingers + beside.held);
         self.pressed = energy / moment.settings.young_modulus;
-        if let Some(firm) = moment.firmness {
-            // What is held is the integral of the firmness, where the contact told its end.
-            let held = self.firmness.mean(self.pressed) / firm.share;
-            for finger in pressed {
-                (finger.energy, finger.own_energy) =
-                    (finger.energy * held, finger.own_energy * held);
-            }
+        let Some(firm) = moment.firmness else {
+            return beside.held;
+        };
+        // What is held is the integral of the firmness, where the contact told its end.
+        let share = self.firmness.mean(self.pressed) / firm.share;
+        if let Some(own) = beside.own {
+            return beside.held + own * (share - 1.0);
         }
+        for finger in pressed {
+            (finger.energy, finger.own_energy) = (finger.energy * share, finger.own_energy * share);
+        }
+        beside.held * share
     }
 }

@@ -101,7 +101,7 @@ impl Servo {
         };
         let relaxed = settings.young_modulus;
         settings.young_modulus *= creep.firmness();
-        let firm = self.firm(&settings, frame.is_held() && creep.is_none(), dt);
+        let firm = self.firm(&settings, creep.is_none(), dt);
         settings.young_modulus *= firm.map_or(1.0, |firm| firm.share);
         self.tick += 1;
         let moment = Moment {
@@ -200,14 +200,15 @@ impl Servo {
     /// The contact of each finger with what it pays for sliding.
     fn pay(&mut self, moment: &Moment<'_>, touches: &Each<Touch>) -> Each<Touch> {
         let prop = (self.prop.held.as_ref()).filter(|_| !moment.frame.is_held());
-        let stored = prop.map_or(0.0, |lying| lying.stored());
-        let mut beside = stored - std::mem::replace(&mut self.stored, stored);
-        if moment.body_replaced {
-            (self.toll, beside) = (Toll::default(), 0.0);
-        }
+        let beside = prop.map(|lying| (lying.held(), lying.raised()));
+        let (held, raised) = beside.unwrap_or_default();
         let mut pressed = touches.map(|touch| touch.map_or_else(Default::default, |t| t.pressed));
-        self.hold(moment, &mut pressed);
-        let brakes = self.toll.take(&pressed, beside, moment.dt);
+        let stored = raised + self.hold(moment, &mut pressed, held);
+        let mut given = stored - std::mem::replace(&mut self.stored, stored);
+        if moment.body_replaced {
+            (self.toll, given) = (Toll::default(), 0.0);
+        }
+        let brakes = self.toll.take(&pressed, given, moment.dt);
         each(&mut self.fingers, |k, _| {
             Some(touches[k]?.braked(brakes[k]))
         })

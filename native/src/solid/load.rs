@@ -1,6 +1,7 @@
 //! What presses a body: forces, what it is led to, and tools that it is kept out of.
 
 pub mod against;
+pub mod place;
 
 use against::Against;
 

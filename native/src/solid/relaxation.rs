@@ -12,48 +12,25 @@
 //! stretch, these turn what they move.
 
 mod beside;
+pub mod gauge;
 mod lead;
+mod prepared;
 
 use std::sync::Arc;
 
-use super::domains::{Domains, Nodal};
+use gauge::Gauge;
+pub use prepared::Solid;
+
+use super::domains::Nodal;
 use super::factor;
-use super::factor::Factor;
 use super::four::Matrix;
 use super::history::{Field, History, add, dot, scale};
 use super::load::Load;
 use super::search::{bound, is_enough, shorter, step_length};
-use super::strained::{Springs, Strained};
-use super::warp::{Room, Warp};
+use super::warp::Room;
 
 /// Tries of one step before its direction is given up.
 const MOST_TRIES: usize = 20;
-
-/// A body on its free nodes, ready to be relaxed.
-#[derive(Debug)]
-pub struct Solid {
-    /// Its energy; of the first term's domains the warp is.
-    pub strained: Strained,
-    /// From linear displacements to others.
-    pub warp: Warp,
-    /// Of the stiffness at rest.
-    pub stiffness: Factor<f32>,
-}
-
-impl Solid {
-    /// How many nodes are free.
-    pub fn nodes(&self) -> usize {
-        self.stiffness.len() / 3
-    }
-
-    /// What it is warped by.
-    fn warped_by(&self) -> (&Domains, Option<&Springs>) {
-        (
-            &self.strained.terms[0].domains,
-            self.strained.springs.as_ref(),
-        )
-    }
-}
 
 /// How a search for rest ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,6 +61,7 @@ pub struct Relaxation {
     none: Field,
     stiffness: factor::Room<f32>,
     room: Room,
+    gauge: Option<Gauge>,
 }
 
 impl Relaxation {
@@ -107,6 +85,7 @@ impl Relaxation {
             none: field,
             stiffness: solid.stiffness.room(),
             room: solid.warp.room(),
+            gauge: solid.gauge.clone(),
             solid,
         }
     }
@@ -118,8 +97,9 @@ impl Relaxation {
 
     /// The linear displacement under forces, in single precision: a place to begin steps from.
     pub fn linear_under(&mut self, forces: &Nodal) -> Field {
-        let mut found = vec![[0.0; 3]; forces.len()];
-        (self.solid.stiffness).solve_freedoms(forces, &mut self.stiffness, &mut found);
+        let (mut found, mut balanced) = (vec![[0.0; 3]; forces.len()], forces.to_vec());
+        let (gauge, room) = (self.gauge.as_ref(), &mut self.stiffness);
+        (self.solid).solve(gauge, &mut balanced, room, &mut found);
         found
     }
 
@@ -134,12 +114,24 @@ impl Relaxation {
             room,
             &mut self.warped,
         );
+        if let Some(gauge) = &self.gauge {
+            gauge.still(&mut self.warped);
+            gauge.add_loose(&self.linear, &mut self.warped);
+        }
     }
 
-    /// What forces do on linear displacements, where they were last warped.
-    pub fn pull_back(&mut self, forces: &Nodal, pulled: &mut Nodal) {
+    /// What forces do on linear displacements, where they were last warped; they are made to balance where
+    /// nothing holds the body.
+    pub fn pull_back(&mut self, forces: &mut Nodal, pulled: &mut Nodal) {
+        let mut loose = Field::new();
+        if let Some(gauge) = &self.gauge {
+            loose.resize(forces.len(), [0.0; 3]);
+            gauge.add_loads(forces, &mut loose);
+            gauge.balance(forces);
+        }
         let by = self.solid.warped_by();
         (self.solid.warp).pull_back(by, &self.gradients, forces, &mut self.room, pulled);
+        add(pulled, 1.0, &loose);
     }
 
     /// The shape after so many steps from the linear displacement of a load: a continuous function of
@@ -229,22 +221,26 @@ impl Relaxation {
         self.before.fill([0.0; 3]);
         load.take_from(&self.before, &mut self.spare);
         load.take_turning_from(&mut self.spare);
+        if let Some(gauge) = &self.gauge {
+            gauge.balance_held(&mut self.spare);
+        }
         self.find_slope(load);
         (self.history).take(share, linear, &self.spare, &self.slope);
     }
 
     /// Finds the direction; what it promises, minus its slope.
     fn direct(&mut self, load: &Load<'_>) -> f64 {
-        let (stiffness, room) = (&self.solid.stiffness, &mut self.stiffness);
+        let (solid, gauge, room) = (&self.solid, self.gauge.as_ref(), &mut self.stiffness);
         let (held, back) = (&mut self.forces, &mut self.start);
         let solve = |right: &Nodal, solution: &mut Nodal| {
-            stiffness.solve_freedoms(right, room, solution);
+            held.copy_from_slice(right);
+            solid.solve(gauge, held, room, solution);
             if let Some(led) = load.led {
                 led.hold(solution);
             }
             if let Some(against) = load.against {
                 against.held_back(solution, held);
-                stiffness.solve_freedoms(held, room, back);
+                solid.solve(gauge, held, room, back);
                 add(solution, -1.0, back);
             }
         };
@@ -277,9 +273,12 @@ impl Relaxation {
     fn find_slope(&mut self, load: &Load<'_>) {
         load.take_from(&self.warped, &mut self.forces);
         let mut slope = std::mem::take(&mut self.slope);
-        let forces = std::mem::take(&mut self.forces);
-        self.pull_back(&forces, &mut slope);
+        let mut forces = std::mem::take(&mut self.forces);
+        self.pull_back(&mut forces, &mut slope);
+        load.take_turning_from(&mut slope);
+        if let Some(gauge) = &self.gauge {
+            gauge.balance_held(&mut slope);
+        }
         (self.slope, self.forces) = (slope, forces);
-        load.take_turning_from(&mut self.slope);
     }
 }

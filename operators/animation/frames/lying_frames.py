@@ -42,7 +42,8 @@ class LyingFrames:
             placement = None if self._free is None else self._free.resting.rest.placement
             self._free = lie(self.thing, self.drawn, around.supports, around.tools, placement)
         else:
-            follow(self._free.resting, around.ways_from(before), self.seconds)
+            follow(self._free.firm, around.ways_from(before), self.seconds)
+        self._free.firm.look()
         return lying_frame(self._free.now(), graph)
 
     def _around_in(self, graph: bpy.types.Depsgraph) -> Around:

@@ -47,9 +47,10 @@ class PiledFrames:
         else:
             self._around = around = self._around_in(graph)
             if around.is_like(before):
-                follow(self._pile.pile, around.ways_from(before), self.seconds)
+                follow(self._pile.firm, around.ways_from(before), self.seconds)
             else:
                 self._pile = self._pile.touched_by(around.tools, supports=around.supports)
+        self._pile.firm.look()
         return tuple(lying_frame(lying, graph) for lying in self._pile.now())
 
     def _around_in(self, graph: bpy.types.Depsgraph) -> Around:

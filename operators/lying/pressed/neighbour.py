@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from ....core.body.soft_body import SoftBody
 from ....core.contact.tool.pose import Pose
+from ....core.shape.shapes import Shape
 from ...object.drawn_body import DrawnBody
 from ...scene.object_handle import ObjectHandle
+from ...shape.drawn_shape import kept_shape
 from .. import rest_layer
 from ..before import Before
 from ..free_body import Lying
@@ -35,6 +37,7 @@ class Neighbour:
     handle : of the object.
     drawn : its body, and the object as it was.
     body : the same at the object's density and Young's modulus.
+    shape : of it.
     before : how the object lay.
     rested : where it came to rest before the press.
     supports : what all rest on.
@@ -43,6 +46,7 @@ class Neighbour:
     handle: ObjectHandle
     drawn: DrawnBody
     body: SoftBody
+    shape: Shape
     before: Before
     rested: Lying
     supports: Supports
@@ -56,7 +60,8 @@ class Neighbour:
         if thing is None:
             return
         nodes, forces = load
-        displacements = self.body.deform(self.body.mesh.surface_nodes[nodes], forces)
+        surface, modulus = self.body.mesh.surface_nodes, self.rested.rest.young_modulus
+        displacements = self.shape.displacements(surface[nodes], forces, modulus)
         if self._away(placement, displacements) < SEEN:
             return
         self._shown = placement, displacements
@@ -93,4 +98,5 @@ def neighbour(
     thing: bpy.types.Object, drawn: DrawnBody, body: SoftBody, rested: Lying, supports: Supports
 ) -> Neighbour:
     """An object as a neighbour of one that will be pressed."""
-    return Neighbour(ObjectHandle.of(thing), drawn, body, Before.of(thing), rested, supports)
+    handle, shape = ObjectHandle.of(thing), kept_shape(thing, drawn)
+    return Neighbour(handle, drawn, body, shape, Before.of(thing), rested, supports)

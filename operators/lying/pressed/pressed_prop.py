@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ....core.contact.tool.pose import Pose
 from ....core.contact.tool.tools import Tool
+from ....core.rest.support import Floor, Support
 from ....core.servo.session import MOST_BODIES, Body, Prop, PropAmong, Snapshot
 from ...object.drawn_body import DrawnBody, open_body
 from ...scene.body_frame import BodyFrame
@@ -95,6 +96,11 @@ class PressedProp:
     def air(self) -> float:
         """How far from its surface at rest it may be where it rests, metres."""
         return 2.0 * float(np.linalg.norm(self._rested.displacements, axis=1).max())
+
+    @property
+    def supports(self) -> Sequence[Floor | Support]:
+        """All that bears the body, where no other soft one does."""
+        return self._coming.supports.all if isinstance(self._coming, Alone) else ()
 
     @property
     def native(self) -> tuple[Body, Prop | PropAmong]:

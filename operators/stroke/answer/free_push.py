@@ -91,7 +91,7 @@ class FreePush:
     def _far(self, thickness: Thickness, rest: Rest) -> Array:
         """Place (3,) of the far side where the body rests so, in the world, metres."""
         drawn = self.tips.drawn
-        displacements = rest.displacements(self.free.young_modulus)
+        displacements = rest.displacements()
         nodes = drawn.body.mesh.nodes + drawn.node_displacements(displacements)
         return rest.to_world(thickness.alpha @ nodes[thickness.nodes])
 

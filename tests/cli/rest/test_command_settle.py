@@ -49,7 +49,7 @@ def test_a_tool_presses_it_against_the_floor(free_file, tmp_path, figures_of, pa
     ("words", "said"),
     [
         ([], "pressed by tools only"),
-        (["--tool", "sphere:0.012", "--shape", "paper"], "the linear one only"),
+        (["--tool", "sphere:0.012", "--shape", "paper"], "tables are of bodies with pins"),
         (["--tool", "sphere:0.012", "--mode", "paper"], "about points"),
         (["--tool", "sphere:0.012", "--floor-friction", "-1"], "coefficient of friction"),
     ],

@@ -12,6 +12,8 @@ from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.pile.pile import Pile
 from palpate.core.rest.support import Floor
+from palpate.core.shape.firm_rest import settle_firmly
+from palpate.core.shape.shapes import shape
 
 WEIGHT = 0.125 * 9.81
 UPPER = {"name": "upper", "file": "cube.npz", "position": [0, 0, 0.0505]}
@@ -76,9 +78,10 @@ def test_its_own_tool_presses_it_as_a_pile_in_python_is_pressed(
     at = Pose.at(FINGER["position"])
     laid = [(cube, Pose.at([0, 0, 0])), (cube, Pose.at([0, 0, 0.0505]))]
     pile = Pile(laid, [Floor()], [(sphere(0.012), at)])
-    pile.settle()
+    shapes = [shape(cube, "real")] * 2
+    settle_firmly(pile, shapes)
     pile.lead([Pose.at([0.025, 0.025, 0.1095])])
-    lower, upper = pile.settle()
+    lower, upper = settle_firmly(pile, shapes)
     (finger,) = figures["tools"]
     np.testing.assert_allclose(finger["force"], upper.tools[0].force, rtol=1e-6)
     floor = forces(figures["bodies"][0])["floor 1"]

@@ -72,7 +72,7 @@ def test_bodies_that_nothing_else_touches_keep_their_common_centre():
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     bodies = [(block, Pose.at([0.0, 0.0, 0.0])), (block, Pose.at([0.03, 0.0, 0.0195], turn))]
     pile = Pile(bodies, settings=PileSettings(gravity=(0.0, 0.0, 0.0)))
-    before = sum(rest.centre for rest in pile.rest)
+    before = sum(rest.centre for rest in pile.rests)
     for _ in range(20):
         rests = pile.step(1e-4)
         assert (

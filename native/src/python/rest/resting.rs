@@ -67,6 +67,13 @@ impl Resting {
         self.inner.time()
     }
 
+    fn set_young_modulus(&mut self, young_modulus: f64) -> PyResult<()> {
+        let modulus = positive("young_modulus", young_modulus)?;
+        self.settling = None;
+        self.inner.set_young_modulus(modulus);
+        Ok(())
+    }
+
     fn laid(&self) -> Prop {
         Prop {
             inner: self.inner.prop.clone(),

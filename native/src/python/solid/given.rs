@@ -10,7 +10,8 @@ use crate::python::tool::shape::Tool;
 use crate::python::vectors::{Matrix, misshaped};
 use crate::solid::domains::Domains;
 use crate::solid::factor::Factor;
-use crate::solid::load::against::Place;
+use crate::solid::load::place::Place;
+use crate::solid::relaxation::gauge::Gauge;
 use crate::solid::strained::{Springs, Term};
 
 pub(super) type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
@@ -46,6 +47,8 @@ pub(super) type GivenPlaces<'py> = (
 pub(super) type GivenLaw = (Vec<(f64, f64)>, Vec<(f64, f64)>, bool);
 /// Where the entries of each row begin, columns, values.
 pub(super) type GivenSprings<'py> = (Counts<'py>, Counts<'py>, Numbers<'py>);
+/// Rigid motions of the nodes, the loads of inertia against them, and how loose each is.
+pub(super) type GivenMotions<'py> = (Vec<Rows<'py>>, Vec<Rows<'py>>, Vec<f64>);
 
 /// A tool, its position and its rotation.
 pub(super) type GivenTool<'py> = (PyRef<'py, Tool>, [f64; 3], [[f64; 3]; 3]);
@@ -142,6 +145,16 @@ pub(super) fn springs(
     } else {
         Err(unfit())
     }
+}
+
+pub(super) fn gauge((motions, loads, gives): &GivenMotions<'_>, nodes: usize) -> PyResult<Gauge> {
+    let fields = |name: &str, given: &[Rows<'_>]| {
+        (given.iter())
+            .map(|one| rows(name, one, nodes))
+            .collect::<PyResult<Vec<_>>>()
+    };
+    let (motions, loads) = (fields("motions", motions)?, fields("loads", loads)?);
+    Gauge::new(motions, loads, gives, nodes).ok_or_else(unfit)
 }
 
 pub(super) fn sizes(numbers: &Counts<'_>) -> PyResult<Vec<usize>> {

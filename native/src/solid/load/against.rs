@@ -2,26 +2,13 @@
 
 use glam::{DMat3, DVec3};
 
+use super::place::Place;
 use crate::algebra::cholesky::dot;
 use crate::solid::domains::Nodal;
 use crate::tool::shape::{Pose, Tool};
 
-/// A place of the surface that a tool is kept out of.
-#[derive(Debug, Clone)]
-pub struct Place {
-    /// The free nodes about it.
-    pub corners: [u32; 3],
-    /// The same nodes among those whose compliance is known.
-    pub known: [u32; 3],
-    /// Its area coordinates; none of what does not move.
-    pub alpha: [f64; 3],
-    /// At rest, m.
-    pub rest: DVec3,
-    /// Force over depth, N/m at 1 Pa.
-    pub firmness: f64,
-    /// Which tool.
-    pub tool: usize,
-}
+/// The share of all places, one in so many, by which those that press may differ from those known.
+const ALIKE: usize = 40;
 
 /// Tools where they are, and the places that they may meet.
 ///
@@ -103,8 +90,8 @@ impl Against {
                 (push > 0.0).then_some((one, normal))
             })
             .collect();
-        // The same places: where they press to has hardly turned.
-        if (pressing.iter().map(|one| one.0)).eq(self.pressing.iter().map(|one| one.0)) {
+        // Almost the same places: steps are chosen as well by these, which press to where they did.
+        if self.changed(&pressing) <= pressing.len() / ALIKE {
             return;
         }
         self.pressing = pressing;
@@ -134,6 +121,19 @@ impl Against {
                 };
             }
         }
+    }
+
+    /// How many places press of which the other ones do not.
+    fn changed(&self, pressing: &[(usize, DVec3)]) -> usize {
+        let (mut before, mut now) = (self.pressing.iter().peekable(), pressing.iter().peekable());
+        let mut changed = 0;
+        while let (Some(one), Some(other)) = (before.peek(), now.peek()) {
+            let (one, other) = (one.0, other.0);
+            changed += usize::from(one != other);
+            before.next_if(|_| one <= other);
+            now.next_if(|_| other <= one);
+        }
+        changed + before.count() + now.count()
     }
 
     /// `forces` become those by which the springs of what presses hold back a displacement that the body alone
@@ -199,22 +199,6 @@ impl Against {
             }
         }
         to.dot(moved)
-    }
-}
-
-impl Place {
-    fn mean(&self, values: &Nodal) -> DVec3 {
-        (self.corners.iter().zip(&self.alpha))
-            .map(|(&node, &share)| share * DVec3::from_array(values[node as usize]))
-            .sum()
-    }
-
-    fn add(&self, force: DVec3, forces: &mut Nodal) {
-        for (&node, &share) in self.corners.iter().zip(&self.alpha) {
-            for (sum, part) in forces[node as usize].iter_mut().zip(force.to_array()) {
-                *sum += share * part;
-            }
-        }
     }
 }
 

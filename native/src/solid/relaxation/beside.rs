@@ -1,5 +1,6 @@
 //! To equilibrium beside tools.
 
+use super::gauge::Gauge;
 use super::{Relaxation, Rest};
 use crate::solid::domains::Nodal;
 use crate::solid::load::Load;
@@ -7,27 +8,30 @@ use crate::solid::load::against::Against;
 use crate::solid::search::bound;
 
 impl Relaxation {
-    /// Steps until it rests beside tools, from a linear displacement; `work` is that of a linear body. What
-    /// is still within them counts as a share of it, as what is not at rest does.
+    /// Steps until it rests beside tools and under forces `dead`, from a linear displacement; `work` is that
+    /// of a linear body. What is still within them counts as a share of it, as what is not at rest does. A
+    /// `loose` body goes as a whole as they press it.
     pub fn keep_out(
         &mut self,
         linear: &Nodal,
-        against: &mut Against,
+        (dead, against): (&Nodal, &mut Against),
+        loose: Option<Gauge>,
         (work, close): (f64, f64),
         most: usize,
     ) -> Rest {
-        let none = std::mem::take(&mut self.none);
+        let still = self.gauge.take();
+        self.gauge = loose.or_else(|| still.clone());
         self.linear.copy_from_slice(linear);
         self.history.clear();
         let mut rest = Rest {
             left: f64::INFINITY,
             steps: 0,
         };
-        self.arrive(&Load::keeping_out(&none, against));
-        self.find_slope(&Load::keeping_out(&none, against));
+        self.arrive(&Load::keeping_out(dead, against));
+        self.find_slope(&Load::keeping_out(dead, against));
         loop {
             against.look(&self.warped);
-            let load = Load::keeping_out(&none, against);
+            let load = Load::keeping_out(dead, against);
             let descent = self.direct(&load);
             let unrest = (descent / work).max(0.0).sqrt();
             let missed = against.missed(&self.warped) / work;
@@ -38,8 +42,8 @@ impl Relaxation {
             rest.steps += 1;
             if unrest <= close {
                 against.count_in(&self.warped);
-                self.arrive(&Load::keeping_out(&none, against));
-                self.find_slope(&Load::keeping_out(&none, against));
+                self.arrive(&Load::keeping_out(dead, against));
+                self.find_slope(&Load::keeping_out(dead, against));
             } else if !self.step(bound(work, descent), descent, &load) {
                 if self.history.is_empty() {
                     break;
@@ -48,7 +52,7 @@ impl Relaxation {
                 self.history.clear();
             }
         }
-        self.none = none;
+        self.gauge = still;
         rest
     }
 }

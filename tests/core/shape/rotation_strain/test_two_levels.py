@@ -7,7 +7,7 @@ from referees.jumps import jump_left
 
 from palpate.core.errors import PalpateError
 from palpate.core.mesh.paper_cube import paper_cube
-from palpate.core.shape.rotation_strain.lattice import lattice_of
+from palpate.core.shape.lattice.lattice import lattice_of
 from palpate.core.shape.rotation_strain.two_levels import TwoLevels
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium

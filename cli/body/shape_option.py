@@ -5,9 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from ...core.body.soft_body import SoftBody
-
-DEFAULT = "(default: real; linear with --mode paper, and where nothing pins the body)"
+DEFAULT = "(default: real; linear with --mode paper)"
 
 
 def add_shape(parser: argparse.ArgumentParser, names: Sequence[str], what: str) -> None:
@@ -15,7 +13,7 @@ def add_shape(parser: argparse.ArgumentParser, names: Sequence[str], what: str) 
     parser.add_argument("--shape", choices=names, help=f"{what} {DEFAULT}")
 
 
-def shape_of(arguments: argparse.Namespace, body: SoftBody) -> str:
+def shape_of(arguments: argparse.Namespace) -> str:
     """Name of the shape that is asked for, also a former one; or of that for what is pressed."""
     asked: str | None = arguments.shape
-    return asked or ("linear" if arguments.mode == "paper" or body.is_free else "real")
+    return asked or ("linear" if arguments.mode == "paper" else "real")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.shape.rotation_strain.tet_samples import MOST_CUTS, TetSamples
+from palpate.core.shape.lattice.tet_samples import MOST_CUTS, TetSamples
 
 TETS = TetMesh.checked(
     np.array([[0, 0, 0], [1.0, 0.1, 0], [0, 0.8, 0], [0.2, 0, 0.7], [-0.1, -0.2, -3.0]]),

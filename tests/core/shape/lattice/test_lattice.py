@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import connected_components
 
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.shape.rotation_strain.lattice import Lattice, lattice_of
+from palpate.core.shape.lattice.lattice import Lattice, lattice_of
 
 SLOPES = np.array([[0.3, -1.0, 2.0], [0.5, 0.1, -0.4], [-2.0, 0.7, 0.2]])
 

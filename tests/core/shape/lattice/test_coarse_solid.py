@@ -6,8 +6,8 @@ import pytest
 from palpate.core.law.of_material import law_of
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
-from palpate.core.shape.rotation_strain.coarse_solid import CoarseSolid
-from palpate.core.shape.rotation_strain.lattice import Lattice
+from palpate.core.shape.lattice.coarse_solid import CoarseSolid
+from palpate.core.shape.lattice.lattice import Lattice
 from palpate.core.shape.solid.solid import solid
 
 NO_PINS = np.empty(0, dtype=np.int64)

@@ -1,0 +1,1 @@
+"""A body filled with cubes, as coarse as is liked."""
