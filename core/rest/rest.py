@@ -105,11 +105,13 @@ class Rest:
     def surface(self) -> Array:
         """The surface nodes (n, 3), moved and deformed, metres, in the world.
 
-        One that is a pressed place is where contact has it: beneath it the body gives way by its
-        near field, too, so that a tip is flat where it stands.
+        One that is a pressed place of a linear body is where contact has it: beneath it the body
+        gives way by its near field, too, so that a tip is flat where it stands.
         """
         nodes = self.body.mesh.nodes[self.body.compliance.free_surface]
         surface = self.to_world(nodes + self.displacements())
+        if self.deformed is not None:
+            return surface
         tree = cKDTree(nodes)
         for touch in self.touches:
             away, found = tree.query(touch.at_rest)
