@@ -1,6 +1,7 @@
 //! A = L L^T of a small symmetric positive definite matrix, in memory that is already there; kept up
 //! to date while rows come and go (Golub and Van Loan 2013, 6.5.4).
 
+use std::hint::black_box;
 use std::ops::Range;
 
 use super::panels::{self, root};
@@ -38,10 +39,14 @@ pub(crate) fn total<const FUSED: bool>(lanes: &[f64; LANES], a: &[f64], b: &[f64
     for k in 0..a.len().min(b.len()) {
         tail = plus_product::<FUSED>(tail, a[k], b[k]);
     }
-    // Halves of a register: what is beside each other in one is not added until the end.
-    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))
-        + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
-        + tail
+    let mut halves = [0.0; LANES / 2];
+    for (k, half) in halves.iter_mut().enumerate() {
+        *half = lanes[k] + lanes[k + LANES / 2];
+    }
+    // What is beside each other in a register is not added until the end. Out of the compiler's sight: from
+    // the last sum back it would take lanes for pairs, and whole loops to registers half as wide.
+    let halves = black_box(halves);
+    ((halves[0] + halves[2]) + (halves[1] + halves[3])) + tail
 }
 
 /// The sums of products of three rows with one, each as [`dot_within`] has it, to the bit: what is loaded of

@@ -11,30 +11,43 @@ const ROOM: usize = 128;
 /// Three vectors one after the other, each with a place for a register's fourth number.
 pub(super) type Three = [f64; 12];
 
+/// A vector with a place for a register's fourth number.
+pub(super) type Padded = [f64; 4];
+
+/// Numbers of a block.
+const NINE: usize = 9;
+
+/// Numbers from one row of blocks to the next: behind the last block a register reaches farther.
+#[inline]
+fn row(room: usize) -> usize {
+    NINE * room + 1
+}
+
 /// Compliance between all slots, kept while they come and go: of each that is loaded a block for all
-/// that are moved, column after column.
+/// that are moved, column after column. A column is read with one number too much, of which nothing is made.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Between {
     room: usize,
-    blocks: Vec<Three>,
+    blocks: Vec<f64>,
 }
 
 impl Between {
+    /// Where a block is.
+    #[inline]
+    fn at(&self, moved: usize, loaded: usize) -> usize {
+        loaded * row(self.room) + NINE * moved
+    }
+
     /// How a slot moves by a force on another, m/N at unit modulus.
     fn block(&self, moved: usize, loaded: usize) -> DMat3 {
-        let block = &self.blocks[loaded * self.room + moved];
-        DMat3::from_cols_array_2d(&[0, 1, 2].map(|c| [0, 1, 2].map(|r| block[4 * c + r])))
+        DMat3::from_cols_slice(&self.blocks[self.at(moved, loaded)..][..NINE])
     }
 
     /// Takes down how a slot moves by a force on another, and the other way round.
     fn put(&mut self, moved: usize, loaded: usize, block: &DMat3) {
-        let (there, back) = (loaded * self.room + moved, moved * self.room + loaded);
-        for c in 0..3 {
-            for r in 0..3 {
-                self.blocks[there][4 * c + r] = block.col(c)[r];
-                self.blocks[back][4 * r + c] = block.col(c)[r];
-            }
-        }
+        let (there, back) = (self.at(moved, loaded), self.at(loaded, moved));
+        self.blocks[there..][..NINE].copy_from_slice(&block.to_cols_array());
+        self.blocks[back..][..NINE].copy_from_slice(&block.transpose().to_cols_array());
     }
 
     /// Takes in a slot behind the last: how each up to it moves by a force on it.
@@ -68,12 +81,39 @@ impl Between {
     }
 
     fn grow(&mut self, room: usize, slots: usize) {
-        let mut blocks = vec![[0.0; 12]; room * room];
+        let mut blocks = vec![0.0; row(room) * room];
         for slot in 0..slots {
-            let from = &self.blocks[slot * self.room..][..slots];
-            blocks[slot * room..][..slots].copy_from_slice(from);
+            let from = &self.blocks[self.at(0, slot)..][..NINE * slots];
+            blocks[slot * row(room)..][..NINE * slots].copy_from_slice(from);
         }
         (self.room, self.blocks) = (room, blocks);
+    }
+
+    /// How the first `count` slots move by forces on some.
+    pub(super) fn move_along(
+        &self,
+        shares: &[(usize, f64)],
+        forces: &[Padded],
+        count: usize,
+        moved: &mut Vec<Padded>,
+    ) {
+        moved.resize(count, [0.0; 4]);
+        let mut blocks = [&self.blocks[..0]; MOST_SHARES];
+        add_up(self.of(shares, count, &mut blocks), forces, moved);
+    }
+
+    /// The blocks of the first `count` slots for some that are loaded.
+    #[inline]
+    fn of<'a, 'b>(
+        &'a self,
+        loaded: &[(usize, f64)],
+        count: usize,
+        blocks: &'b mut [&'a [f64]; MOST_SHARES],
+    ) -> &'b [&'a [f64]] {
+        for (blocks, &(slot, _)) in blocks.iter_mut().zip(loaded) {
+            *blocks = &self.blocks[self.at(0, slot)..][..row(count)];
+        }
+        &blocks[..loaded.len()]
     }
 
     /// How the first `count` slots move by a unit force along each of some ways, one or three, shared out
@@ -88,11 +128,10 @@ impl Between {
         moved.resize(count, [0.0; 12]);
         let mut blocks = [&self.blocks[..0]; MOST_SHARES];
         let mut parts = [0.0; MOST_SHARES];
-        for (number, &(slot, share)) in shares.iter().enumerate() {
-            blocks[number] = &self.blocks[slot * self.room..][..count];
-            parts[number] = share;
+        for (part, &(_, share)) in parts.iter_mut().zip(shares) {
+            *part = share;
         }
-        let (blocks, parts) = (&blocks[..shares.len()], &parts[..shares.len()]);
+        let (blocks, parts) = (self.of(shares, count, &mut blocks), &parts[..shares.len()]);
         match *ways {
             [way] => turn_one(blocks, parts, way, moved),
             [first, second, third] => turn_three(blocks, parts, [first, second, third], moved),
@@ -103,12 +142,14 @@ impl Between {
 
 /// The sum of the blocks of a slot, each by its share.
 #[inline(always)]
-fn sum_of<const FUSED: bool>(blocks: &[&[Three]], shares: &[f64], slot: usize) -> Three {
+fn sum_of<const FUSED: bool>(blocks: &[&[f64]], shares: &[f64], slot: usize) -> Three {
     let mut sum = [0.0; 12];
     for (blocks, &share) in blocks.iter().zip(shares) {
-        let block = &blocks[slot];
-        for k in 0..12 {
-            sum[k] = plus_product::<FUSED>(sum[k], share, block[k]);
+        let block = &blocks[NINE * slot..][..=NINE];
+        for c in 0..3 {
+            for r in 0..4 {
+                sum[4 * c + r] = plus_product::<FUSED>(sum[4 * c + r], share, block[3 * c + r]);
+            }
         }
     }
     sum
@@ -126,8 +167,26 @@ fn turned<const FUSED: bool>(block: &Three, way: DVec3) -> [f64; 4] {
 }
 
 widely! {
+    /// What the blocks of each slot make of a force each, added up.
+    fn add_up(blocks: &[&[f64]], forces: &[Padded], moved: &mut [Padded]) {
+        for (slot, moved) in moved.iter_mut().enumerate() {
+            let mut sum = [0.0; 4];
+            for (blocks, force) in blocks.iter().zip(forces) {
+                let block = &blocks[NINE * slot..][..=NINE];
+                for c in 0..3 {
+                    for r in 0..4 {
+                        sum[r] = plus_product::<FUSED>(sum[r], force[c], block[3 * c + r]);
+                    }
+                }
+            }
+            *moved = sum;
+        }
+    }
+}
+
+widely! {
     /// What the blocks of each slot, added up by their shares, make of a way.
-    fn turn_one(blocks: &[&[Three]], shares: &[f64], way: DVec3, moved: &mut [Three]) {
+    fn turn_one(blocks: &[&[f64]], shares: &[f64], way: DVec3, moved: &mut [Three]) {
         for (slot, moved) in moved.iter_mut().enumerate() {
             let sum = sum_of::<FUSED>(blocks, shares, slot);
             moved[..4].copy_from_slice(&turned::<FUSED>(&sum, way));
@@ -137,7 +196,7 @@ widely! {
 
 widely! {
     /// The same of three ways.
-    fn turn_three(blocks: &[&[Three]], shares: &[f64], ways: [DVec3; 3], moved: &mut [Three]) {
+    fn turn_three(blocks: &[&[f64]], shares: &[f64], ways: [DVec3; 3], moved: &mut [Three]) {
         for (slot, moved) in moved.iter_mut().enumerate() {
             let sum = sum_of::<FUSED>(blocks, shares, slot);
             moved[..4].copy_from_slice(&turned::<FUSED>(&sum, ways[0]));
@@ -191,6 +250,12 @@ mod tests {
                 let told = DVec3::from_slice(&moved[4 * number..]);
                 assert!(told.distance(parts.into_iter().sum()) < 1e-12);
             }
+        }
+        let (mut along, way) = (Vec::new(), ways[0]);
+        let forces = shares.map(|(_, share)| (way * share).extend(0.0).to_array());
+        between.move_along(&shares, &forces, 7, &mut along);
+        for (along, moved) in along.iter().zip(&moved) {
+            assert!((0..3).all(|axis| (along[axis] - moved[axis]).abs() < 1e-12));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::outline::known::Known;
 use crate::contact::fading::fading;
 
 /// Points of the other body that carry a contact's force at most.
@@ -65,6 +66,8 @@ pub struct Contact {
     pub place: DVec3,
     /// Triangle of the other body that it met there.
     pub(super) triangle: u32,
+    /// Triangles around it there.
+    pub(super) known: Known,
     /// Out of the other, in the world.
     pub normal: DVec3,
     /// From the other, m.
@@ -97,6 +100,7 @@ impl Contact {
             shares: Shares::NONE,
             place: DVec3::ZERO,
             triangle: 0,
+            known: Known::NOTHING,
             normal: DVec3::ZERO,
             gap: f64::INFINITY,
             within: 0.0,

@@ -19,6 +19,11 @@ const FORGOTTEN: f64 = 1.5;
 const WATCHED: f64 = 0.15;
 /// A place so many distances between points beyond an edge meets nothing.
 const BESIDE: f64 = 0.25;
+/// What is around a place is known for a way of this share of that.
+const KNOWN: f64 = 0.0625;
+/// Outside of a body nothing is met beyond so many times as far as it may be off and beyond an edge: the
+/// curved surface, which it is near to, lies less than that beyond the triangles.
+const FAR: f64 = 2.0;
 
 /// Of two bodies the one whose points meet the other's surface: the one with the finer points, the
 /// first of two alike.
@@ -142,6 +147,7 @@ impl Meeting {
             return;
         }
         let is_near = |ball: DVec3, radius| ball.distance(middle) <= reach + radius + margin;
+        let surface = against.surface();
         let mut triangle = 0;
         member.touchable.own().tree().visit(is_near, |point| {
             let at = &member.touchable.own().points()[point as usize];
@@ -152,7 +158,12 @@ impl Meeting {
             }
             let facing = member.placement.rotation * at.normal;
             let facing = against.placement.direction_to_body(facing);
-            if let Some(near) = met(against.body(), place, facing, triangle, beside) {
+            let is_outside = !against.is_around(place, 0.0);
+            if is_outside && !surface.may_meet(place, facing, FAR * (margin + beside)) {
+                return;
+            }
+            let closest = surface.closest(place, triangle);
+            if let Some(near) = met(&surface, place, facing, &closest, beside) {
                 triangle = near.triangle;
                 if near.gap <= margin {
                     self.offer((body, point, Against::Body(other)));
@@ -185,6 +196,7 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_
         }
         Against::Body(number) => {
             let other = &members[number];
+            let surface = other.surface();
             let given = contact.shares.iter();
             let given: DVec3 = given
                 .map(|&(point, share)| other.moved(point) * share)
@@ -194,13 +206,10 @@ pub(super) fn look(contact: &mut Contact, members: &[Member], around: &Around<'_
             let facing = other.placement.direction_to_body(facing);
             contact.place = other.placement.place_to_body(place) - given;
             let beside = BESIDE * member.touchable.own().spacing();
-            match met(
-                other.body(),
-                contact.place,
-                facing,
-                contact.triangle,
-                beside,
-            ) {
+            let way = KNOWN * beside;
+            let closest =
+                (contact.known).closest(surface.body, contact.place, contact.triangle, way);
+            match met(&surface, contact.place, facing, &closest, beside) {
                 Some(met) => {
                     let normal = other.placement.rotation * met.normal;
                     contact.normal = if contact.push > 0.0 {
@@ -263,7 +272,8 @@ pub(super) fn share_out(contact: &mut Contact, members: &[Member]) {
     if let Against::Body(number) = contact.against {
         let other = &members[number];
         let normal = other.placement.direction_to_body(contact.normal);
-        contact.shares = shares(other.touchable.own(), contact.place, normal);
+        let nearest = contact.shares.first().map(|share| share.0);
+        contact.shares = shares(other.touchable.own(), contact.place, normal, nearest);
     }
 }
 

@@ -1,10 +1,14 @@
 //! A body of the pile: where it is, what presses it, how it gives way.
 
+mod loading;
+
 use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::between::Between;
+use super::outline::Surface;
+use super::outline::looks::Looks;
 use crate::algebra::MOST_POINTS;
 use crate::body::surface::Body;
 use crate::contact::cones::mean;
@@ -38,6 +42,7 @@ pub struct Member {
     /// Middle of its outline, how far that reaches, and its corners, m.
     pub(super) around: (DVec3, f64),
     outline: [DVec3; 2],
+    looks: Arc<Looks>,
     patch: Patch,
     /// The slot of each contact point, or none.
     slot_of: Vec<u32>,
@@ -73,6 +78,7 @@ impl Member {
             turn: 0,
             mobility: None,
             motion: Motion::default(),
+            looks: Arc::new(Looks::new(touchable.own().body())),
             touchable,
             young_modulus,
             free,
@@ -88,6 +94,15 @@ impl Member {
     #[inline]
     pub fn body(&self) -> &Body {
         self.touchable.own().body()
+    }
+
+    /// Its surface as others meet it.
+    #[inline]
+    pub(super) fn surface(&self) -> Surface<'_> {
+        Surface {
+            body: self.body(),
+            looks: &self.looks,
+        }
     }
 
     /// The contact point of a slot.
@@ -207,43 +222,10 @@ impl Member {
         &self.between
     }
 
-    /// Begins to load it with the forces on it: none so far.
-    pub(super) fn begin_loading(&mut self) {
-        let slots = self.patch.slots_mut().iter_mut();
-        slots.for_each(|slot| slot.force = DVec3::ZERO);
-    }
-
-    /// Adds a force, N in its frame, shared out among points that are looked at.
-    pub(super) fn add_load(&mut self, shares: &[(u32, f64)], force: DVec3) {
-        let force = force / self.young_modulus;
-        for &(point, share) in shares {
-            let slot = self.slot(point);
-            self.patch.slots_mut()[slot].force += force * share;
-        }
-    }
-
-    /// Displaces the slots by their loads.
-    pub(super) fn give_way(&mut self) {
-        self.patch.displace();
-    }
-
-    /// The elastic energy in it, J.
-    pub fn elastic(&self) -> f64 {
-        let slots = self.slots().iter();
-        let held = slots.map(|slot| 0.5 * slot.force.dot(slot.moved));
-        held.sum::<f64>() * self.young_modulus
-    }
-
     /// What its weight can give back, J, from the height of the world's origin on.
     pub(super) fn raised(&self, gravity: DVec3) -> f64 {
         let lift = |free: FreeBody| free.mass * gravity.dot(self.placement.to_world(free.centre));
         self.free.map_or(0.0, |free| -lift(free))
-    }
-
-    /// Forces on its contact points, N in its frame.
-    pub fn loads(&self) -> impl Iterator<Item = (u32, DVec3)> {
-        let slots = self.slots().iter();
-        slots.map(|slot| (self.point_of(slot), slot.force * self.young_modulus))
     }
 
     /// Begins a tick of `dt` s.

@@ -1,11 +1,16 @@
 //! How far a place is from the curved surface that a body's flat triangles stand for.
 
+#[cfg(test)]
+mod cube;
+pub(super) mod known;
+pub(super) mod looks;
+
 use glam::DVec3;
 
-use crate::body::closest::closest_point;
 use crate::body::face::closest_on_face;
 use crate::body::surface::Body;
 use crate::body::tree::Closest;
+use looks::Looks;
 
 /// A surface that looks less than this cosine towards the one it meets is not met.
 const TOWARDS: f64 = -0.3;
@@ -25,22 +30,43 @@ pub(super) struct Met {
     pub presence: f64,
 }
 
-/// How a place of another body, whose surface looks along `facing` there, is met; all in the body's
-/// frame. Nothing beyond an edge by more than `beside` m, or where both look the same way.
+/// A body's surface, and which way its parts look.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surface<'a> {
+    pub body: &'a Body,
+    pub looks: &'a Looks,
+}
+
+impl Surface<'_> {
+    /// Whether anything within a reach of a place may look towards what looks along `facing`: quickly told
+    /// where nothing does.
+    pub(super) fn may_meet(&self, place: DVec3, facing: DVec3, reach: f64) -> bool {
+        (self.looks).any_may(self.body, (place, reach), facing, TOWARDS)
+    }
+
+    /// The closest place; `hint` is a triangle that is likely near.
+    pub(super) fn closest(&self, place: DVec3, hint: u32) -> Closest {
+        self.body.tree().closest(self.body.faces(), place, hint)
+    }
+}
+
+/// How a place of another body, whose surface looks along `facing` there, is met by a surface, of which
+/// the closest place is told; all in the body's frame. Nothing beyond an edge by more than `beside` m, or
+/// where both look the same way.
 ///
 /// Half of the mean way to the tangent planes of a triangle's corners is what its curved surface lies
 /// beyond it, exact to second order, as contact points do.
 pub(super) fn met(
-    body: &Body,
+    surface: &Surface<'_>,
     place: DVec3,
     facing: DVec3,
-    triangle: u32,
+    closest: &Closest,
     beside: f64,
 ) -> Option<Met> {
-    let (closest, _) = closest_point(body, place, triangle);
-    let (closest, normal, kept) = towards(body, &closest, facing)
+    let body = surface.body;
+    let (closest, normal, kept) = towards(body, closest, facing)
         .map(|(closest, normal)| (closest, normal, 1.0))
-        .or_else(|| around_the_corner(body, place, facing, &closest, beside))?;
+        .or_else(|| around_the_corner(surface, place, facing, closest, beside))?;
     let way = place - closest.point;
     let along = normal.dot(way);
     let beyond_edge = (way - normal * along).length();
@@ -63,17 +89,17 @@ pub(super) fn met(
 /// The closest place of another face than the nearest one, the surface's normal there, and how much of
 /// it is left, from 1 to 0.
 fn around_the_corner(
-    body: &Body,
+    surface: &Surface<'_>,
     place: DVec3,
     facing: DVec3,
     nearest: &Closest,
     beside: f64,
 ) -> Option<(Closest, DVec3, f64)> {
-    let outward = body.face(nearest.triangle).normal;
+    let outward = surface.body.face(nearest.triangle).normal;
     let is_within = outward.dot(place - nearest.point) < 0.0;
     let around = if is_within { AROUND } else { 1.0 } * beside;
-    let other = nearest_towards(body, place, facing, nearest.distance + around)?;
-    let (other, normal) = towards(body, &other, facing)?;
+    let other = nearest_towards(surface, place, facing, nearest.distance + around)?;
+    let (other, normal) = towards(surface.body, &other, facing)?;
     let left = if is_within {
         (2.0 - 2.0 * (other.distance - nearest.distance) / around).min(1.0)
     } else {
@@ -84,10 +110,15 @@ fn around_the_corner(
 
 /// The closest place of the triangles that look towards the other, nearer than `reach` m: of any that
 /// near, how far the place is beyond an edge would jump from tick to tick.
-fn nearest_towards(body: &Body, place: DVec3, facing: DVec3, mut reach: f64) -> Option<Closest> {
+fn nearest_towards(
+    &Surface { body, looks }: &Surface<'_>,
+    place: DVec3,
+    facing: DVec3,
+    mut reach: f64,
+) -> Option<Closest> {
     let mut nearest = None;
-    let any = |_| true;
-    body.tree().visit_within(place, reach, any, |triangle| {
+    let may = |number| looks.may_look(number, facing, TOWARDS);
+    body.tree().visit_within(place, reach, may, |triangle| {
         let face = body.face(triangle);
         if face.normal.dot(facing) < TOWARDS {
             let (alpha, point) = closest_on_face(face, place);
@@ -117,38 +148,17 @@ fn towards(body: &Body, closest: &Closest, facing: DVec3) -> Option<(Closest, DV
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashMap;
-
-    use glam::DMat3;
-
+    use super::cube::cube;
     use super::*;
 
-    const CELLS: i32 = 6;
-
-    /// A cube of one metre about the origin, of many triangles a side.
-    fn cube() -> Body {
-        let (mut numbers, mut nodes, mut triangles) = (HashMap::new(), Vec::new(), Vec::new());
-        let mut number = |at: [i32; 3]| {
-            *numbers.entry(at).or_insert_with(|| {
-                nodes.push(DVec3::from_array(at.map(f64::from)) / f64::from(CELLS) - 0.5);
-                nodes.len() as u32 - 1
-            })
+    fn met_by(cube: &Body, place: DVec3, beside: f64) -> Option<Met> {
+        let looks = Looks::new(cube);
+        let closest = cube.tree().closest(cube.faces(), place, 0);
+        let surface = Surface {
+            body: cube,
+            looks: &looks,
         };
-        for cell in 0..6 * CELLS * CELLS {
-            let (i, j, face) = (cell % CELLS, cell / CELLS % CELLS, cell / CELLS / CELLS);
-            let (axis, side) = ((face / 2) as usize, face % 2);
-            let [a, mut b, c, mut d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| {
-                let mut at = [side * CELLS; 3];
-                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (i + x, j + y);
-                number(at)
-            });
-            if side == 0 {
-                (b, d) = (d, b);
-            }
-            triangles.extend([[a, b, c], [a, c, d]]);
-        }
-        let blocks = vec![DMat3::IDENTITY; nodes.len()];
-        Body::new(nodes, triangles, blocks).expect("sound")
+        met(&surface, place, DVec3::NEG_Z, &closest, beside)
     }
 
     /// Where another face is nearer, a place beneath the top is met as all others: on it.
@@ -160,7 +170,7 @@ mod tests {
             let depth = 0.01 + 0.0004 * f64::from(step);
             for (beyond, presence) in [(-0.005, 1.0), (0.005, 0.95), (0.05, 0.5)] {
                 let place = DVec3::new(x, 0.5 + beyond, 0.5 - depth);
-                let met = met(&cube, place, DVec3::NEG_Z, 0, beside).expect("near");
+                let met = met_by(&cube, place, beside).expect("near");
                 assert!((met.gap + depth).abs() < 1e-12, "{met:?} at {place}");
                 assert!((met.presence - presence).abs() < 1e-9, "{met:?} at {place}");
             }
@@ -175,7 +185,7 @@ mod tests {
         for step in 0..200 {
             let depth = 0.002 * f64::from(step);
             let place = DVec3::new(0.1, 0.499, 0.5 - depth);
-            let now = met(&cube, place, DVec3::NEG_Z, 0, beside).map_or(0.0, |met| met.presence);
+            let now = met_by(&cube, place, beside).map_or(0.0, |met| met.presence);
             assert!(now <= before + 1e-12 && before - now < 0.03, "{depth}");
             assert!(now > 1.0 - 1e-9 || depth > 0.08, "{depth}");
             before = now;

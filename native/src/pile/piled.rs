@@ -172,14 +172,24 @@ impl Pile {
     /// Finds which contact points of each body are looked at. Contacts for which there is no room go,
     /// the farthest first.
     fn fit(&mut self) {
+        self.ranked.clear();
+        self.ranked.extend(0..self.contacts.len());
+        // Where there is room for all it does not matter which is the first.
+        if !self.fit_in_turn() {
+            rank(&mut self.ranked, &self.contacts);
+            self.fit_in_turn();
+            let mut fits = self.fits.iter();
+            self.contacts.retain(|_| fits.next() == Some(&true));
+        }
+    }
+
+    /// Finds which contacts there is room for, each as it is ranked; whether there is for all.
+    fn fit_in_turn(&mut self) -> bool {
         let (members, contacts, pace) = (&mut self.members, &self.contacts, self.pace);
         members.iter_mut().for_each(Member::begin_wanting);
-        self.ranked.clear();
-        self.ranked.extend(0..contacts.len());
-        rank(&mut self.ranked, contacts);
         self.fits.clear();
         self.fits.resize(contacts.len(), false);
-        let mut entered = 0;
+        let (mut entered, mut all_fit) = (0, true);
         for &number in &self.ranked {
             let contact = &contacts[number];
             let bodies = [Some(contact.body), contact.other()];
@@ -197,17 +207,18 @@ impl Pile {
             let (has_room, entering) =
                 new.fold((true, 0), |all, one| (all.0 & one.0, all.1 + one.1));
             let waits = contact.push == 0.0 && entering > 0 && entered + entering > pace.entering;
-            if has_room && !waits {
-                self.fits[number] = true;
-                entered += entering;
-                for body in bodies.into_iter().flatten() {
-                    let shares = contact.shares_on(body).iter();
-                    shares.for_each(|share| members[body].want(share.0));
-                }
+            if !has_room || waits {
+                all_fit = false;
+                continue;
+            }
+            self.fits[number] = true;
+            entered += entering;
+            for body in bodies.into_iter().flatten() {
+                let shares = contact.shares_on(body).iter();
+                shares.for_each(|share| members[body].want(share.0));
             }
         }
-        let mut fits = self.fits.iter();
-        self.contacts.retain(|_| fits.next() == Some(&true));
+        all_fit
     }
 
     fn look(&mut self, fingers: &[Option<Rigid<'_>>]) {

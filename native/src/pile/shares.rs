@@ -12,15 +12,25 @@ use crate::tool::points::ToolSurface;
 const REACH: f64 = 1.4;
 /// Points that look more than 60 degrees aside carry nothing.
 const FACING: f64 = 0.5;
+/// Its neighbours do where the normal is less than 30 degrees aside from that of a point: at most 60 and
+/// these are 90, as far as neighbours of a point look aside.
+const LIKE_THE_HINT: f64 = 0.867;
 /// First search for points within so many usual distances between them.
 const FIRST_SEARCH: f64 = 1.5;
 /// Where points lie on a line, across it this share of their own extent holds the fit.
 const LEAST_EXTENT: f64 = 1e-6;
 
 /// Contact points that carry a force at a place on the surface, where `normal` is outward, and their
-/// shares.
-pub(super) fn shares(surface: &ToolSurface, place: DVec3, normal: DVec3) -> Shares {
-    let near = nearest(surface, place, normal);
+/// shares; `hint` is one that is likely near.
+pub(super) fn shares(
+    surface: &ToolSurface,
+    place: DVec3,
+    normal: DVec3,
+    hint: Option<u32>,
+) -> Shares {
+    let near = hint
+        .and_then(|hint| nearest_around(surface, place, normal, hint))
+        .unwrap_or_else(|| nearest(surface, place, normal));
     let (near, mut found) = (near.points(), Shares::NONE);
     let Some(&(third, _)) = near.get(2).or(near.last()) else {
         return found;
@@ -69,8 +79,29 @@ struct Nearest {
 }
 
 impl Nearest {
+    const NONE: Self = Self {
+        count: 0,
+        points: [(0.0, 0); MOST_SHARES + 1],
+    };
+
     fn points(&self) -> &[(f64, u32)] {
         &self.points[..self.count]
+    }
+
+    /// Takes a point in that is within a reach of a place and looks as it does.
+    #[inline]
+    fn offer_if(
+        &mut self,
+        surface: &ToolSurface,
+        place: DVec3,
+        normal: DVec3,
+        (number, reach): (u32, f64),
+    ) {
+        let point = &surface.points()[number as usize];
+        let distance = point.position.distance(place);
+        if distance <= reach && point.normal.dot(normal) > FACING {
+            self.offer(distance, number);
+        }
     }
 
     fn offer(&mut self, distance: f64, point: u32) {
@@ -83,22 +114,39 @@ impl Nearest {
     }
 }
 
+/// Of a point's neighbours those around a place that look as it does, if certainly all that carry
+/// anything are among them.
+fn nearest_around(
+    surface: &ToolSurface,
+    place: DVec3,
+    normal: DVec3,
+    hint: u32,
+) -> Option<Nearest> {
+    let point = &surface.points()[hint as usize];
+    // What looks as the place does looks less than 90 degrees aside from the point, as neighbours do.
+    if point.normal.dot(normal) < LIKE_THE_HINT {
+        return None;
+    }
+    let beside = point.position.distance(place);
+    let known = surface.known_around(hint) - beside;
+    let mut found = Nearest::NONE;
+    let neighbours = surface.neighbours(hint).iter();
+    for &number in neighbours.chain([&hint]) {
+        found.offer_if(surface, place, normal, (number, known));
+    }
+    let third = found.points().get(2)?.0;
+    (REACH * third < known).then_some(found)
+}
+
 /// Points around a place that look as it does: three at least, if there are.
 fn nearest(surface: &ToolSurface, place: DVec3, normal: DVec3) -> Nearest {
     let mut reach = FIRST_SEARCH * surface.spacing();
     let most = 2.0 * surface.body().size();
     loop {
-        let mut found = Nearest {
-            count: 0,
-            points: [(0.0, 0); MOST_SHARES + 1],
-        };
+        let mut found = Nearest::NONE;
         let within = |middle: DVec3, radius| middle.distance(place) <= reach + radius;
         surface.tree().visit(within, |number| {
-            let point = &surface.points()[number as usize];
-            let distance = point.position.distance(place);
-            if distance <= reach && point.normal.dot(normal) > FACING {
-                found.offer(distance, number);
-            }
+            found.offer_if(surface, place, normal, (number, reach));
         });
         let third = found.points().get(2);
         let is_enough = third.is_some_and(|third| REACH * third.0 <= reach);
@@ -119,10 +167,7 @@ mod tests {
 
     #[test]
     fn the_nearest_are_kept_in_their_order() {
-        let mut nearest = Nearest {
-            count: 0,
-            points: [(0.0, 0); MOST_SHARES + 1],
-        };
+        let mut nearest = Nearest::NONE;
         for number in 0..40_u32 {
             nearest.offer(f64::from(number * 17 % 40), number);
         }

@@ -48,10 +48,11 @@ impl Borne {
     pub fn show(&mut self, body: usize, forces: impl Iterator<Item = (u32, DVec3)>) {
         let Forces { count, nodes } = &mut self.bodies[body];
         *count = 0;
-        for (shown, force) in nodes.iter_mut().zip(forces) {
-            *shown = force;
+        // One after the other from within: forces that come from several places are told apart once each.
+        forces.take(nodes.len()).for_each(|force| {
+            nodes[*count] = force;
             *count += 1;
-        }
+        });
     }
 
     /// Becomes that of a tick in which nothing bears any.

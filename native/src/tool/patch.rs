@@ -9,7 +9,8 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use products::{Vectors, add_along, add_both, add_moved, at, fill_up, gather, set};
+use products::{Vectors, add_along, add_both, add_moved};
+use products::{at, fill_up, gather, gather_and_add, set};
 use slot_numbers::SlotNumbers;
 
 use super::blocks::{Blocks, Recent};
@@ -150,8 +151,14 @@ impl Patch {
     /// that it is needed for.
     #[inline]
     pub(crate) fn add(&mut self, slot: usize) {
-        self.see(slot);
-        self.load(slot, at(&self.forces, slot));
+        if at(&self.forces, slot) == DVec3::ZERO {
+            self.see(slot);
+            return;
+        }
+        let blocks = &self.compliance[blocks_at(slot)];
+        let by_others = gather_and_add(blocks, &mut self.forces, slot, &mut self.moved);
+        let moved = self.summed(slot) + DVec3::from_array(by_others);
+        set(&mut self.moved, slot, moved);
     }
 
     /// Adds how far the forces on the slots before one move it; how far it moves so far.

@@ -128,6 +128,18 @@ impl ToolSurface {
         &self.neighbours[first..end]
     }
 
+    /// How far around a point all that looks less than 90 degrees aside from it is among its neighbours, m.
+    #[inline]
+    pub(crate) fn known_around(&self, point: u32) -> f64 {
+        match *self.neighbours(point) {
+            [.., last] if self.neighbours(point).len() == MOST_NEIGHBOURS => {
+                let [last, own] = [last, point].map(|i| self.points[i as usize].position);
+                last.distance(own)
+            }
+            _ => NEIGHBOURHOOD * self.spacing,
+        }
+    }
+
     /// What the mesh is too coarse for, if that is known.
     #[inline]
     pub(crate) fn near(&self) -> Option<&NearField> {

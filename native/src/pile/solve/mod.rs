@@ -1,8 +1,10 @@
 //! Forces of all contacts in a tick: one problem, set up, solved, and handed to the contacts.
 
+mod mirrored;
 pub(super) mod pace;
 mod products;
 mod rubbing;
+mod straight;
 mod system;
 
 use glam::{DMat3, DVec3};

@@ -33,9 +33,7 @@ pub(super) fn rub(
     let count = system.directions.len();
     problem.begin(count);
     for i in 0..count {
-        for (j, &entry) in system.row(i)[..=i].iter().enumerate() {
-            problem.set(i, j, entry);
-        }
+        (problem.row_mut(i)).copy_from_slice(&system.row(i)[..count]);
     }
     problem.forces[..count].copy_from_slice(&forces[..count]);
     for _ in 0..pace.turns {

@@ -5,7 +5,9 @@
 
 use glam::{DMat3, DVec3};
 
+use super::mirrored::add_mirrored;
 use super::products::{Side, seen_by};
+use super::straight::Straight;
 use crate::algebra::room;
 use crate::contact::mobility::Mobility;
 use crate::pile::between::Three;
@@ -15,7 +17,7 @@ use crate::pile::member::Member;
 /// Displacements along the unknowns under forces along these: `at_rest + matrix force`. Keeps its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct System {
-    /// Row by row, m/N. A row holds the columns up to its own, and one of a force aside all of these.
+    /// Row by row, m/N. A row of a force aside holds all columns, others those of pushes.
     matrix: Vec<f64>,
     /// Of no force at all, with what weight does in this tick, m.
     pub at_rest: Vec<f64>,
@@ -32,6 +34,7 @@ pub(super) struct System {
     shares: Vec<(usize, f64)>,
     moved: Vec<Three>,
     parts: Vec<Three>,
+    straight: Straight,
 }
 
 impl System {
@@ -57,7 +60,8 @@ impl System {
         self.matrix
             .resize((count * count).max(self.matrix.len()), 0.0);
         for row in 0..count {
-            self.matrix[row * count..][..=row].fill(0.0);
+            let columns = if row < pushes { pushes } else { count };
+            self.matrix[row * count..][..columns].fill(0.0);
         }
         self.at_rest.clear();
         self.at_rest.extend(away.iter().map(|way| way.x));
@@ -74,10 +78,15 @@ impl System {
         }));
         for (body, member) in members.iter().enumerate() {
             self.find_sides(contacts, chosen, body, member);
-            self.give_way(member);
+            if self.rubs.is_empty() {
+                self.give_way_straight(member);
+            } else {
+                self.give_way(member);
+            }
             self.add_rest(member);
         }
-        mirror(&mut self.matrix, pushes, count);
+        add_mirrored(&mut self.matrix, 0..pushes, count);
+        add_mirrored(&mut self.matrix, pushes..count, count);
     }
 
     /// Has each contact give way by a share more of how far it does along its push.
@@ -104,6 +113,7 @@ impl System {
         self.shares.reserve(MOST_SHARES * contacts);
         self.moved.reserve(contacts);
         self.parts.reserve(contacts);
+        self.straight.reserve(contacts, MOST_SHARES);
     }
 
     fn find_sides(&mut self, contacts: &[Contact], chosen: &[usize], body: usize, member: &Member) {
@@ -176,6 +186,18 @@ impl System {
         (self.moved, self.parts) = (moved, parts);
     }
 
+    /// The same where none rubs.
+    fn give_way_straight(&mut self, member: &Member) {
+        let (sides, shares, count) = (&self.sides, &self.shares, self.at_rest.len());
+        let (straight, matrix) = (&mut self.straight, &mut self.matrix);
+        straight.give_way(member, sides, shares, |number, parts| {
+            let row = &mut matrix[sides[number].contact * count..][..count];
+            for (side, part) in sides.iter().zip(parts) {
+                row[side.contact] += part;
+            }
+        });
+    }
+
     /// Adds what a side does to those up to it, and by symmetry they to it.
     fn add(&mut self, number: usize, parts: &[Three]) {
         let count = self.at_rest.len();
@@ -235,7 +257,7 @@ impl System {
         }
     }
 
-    /// A row of the matrix: up to its own column, or that of the last force aside.
+    /// A row of the matrix: up to the column of the last push, or of the last force aside.
     #[inline]
     pub(super) fn row(&self, number: usize) -> &[f64] {
         let count = self.at_rest.len();
@@ -259,13 +281,4 @@ fn carried(mobility: &Mobility, arm: DVec3, ways: &DMat3) -> [Three; 4] {
         }
     }
     carried
-}
-
-/// Copies what is below the diagonal of the rows and columns from `first` on to above it.
-fn mirror(matrix: &mut [f64], first: usize, count: usize) {
-    for row in first..count {
-        for column in first..row {
-            matrix[column * count + row] = matrix[row * count + column];
-        }
-    }
 }

@@ -60,9 +60,33 @@ pub(super) fn fill_up(vectors: &mut Vectors, slots: usize) {
 /// How far a slot, whose blocks these are, moves under the forces on those before it.
 #[inline]
 pub(super) fn gather(blocks: &[f64], forces: &mut Vectors, slot: usize) -> [f64; 3] {
+    without_own(forces, slot, |forces| gather_all(blocks, forces))
+}
+
+/// The same, and adds how far it and those before it move under the force on it.
+#[inline]
+pub(super) fn gather_and_add(
+    blocks: &[f64],
+    forces: &mut Vectors,
+    slot: usize,
+    moved: &mut Vectors,
+) -> [f64; 3] {
+    let own = at(forces, slot);
+    without_own(forces, slot, |forces| {
+        gather_and_add_all(blocks, forces, own, moved)
+    })
+}
+
+/// What is found while there is no force on a slot.
+#[inline]
+fn without_own(
+    forces: &mut Vectors,
+    slot: usize,
+    find: impl FnOnce(&Vectors) -> [f64; 3],
+) -> [f64; 3] {
     let own = at(forces, slot);
     set(forces, slot, DVec3::ZERO);
-    let moved = gather_all(blocks, forces);
+    let moved = find(forces);
     set(forces, slot, own);
     moved
 }
@@ -88,6 +112,36 @@ widely! {
             *sum = total::<FUSED>(&lanes, &[], &[]);
         }
         moved
+    }
+}
+
+widely! {
+    /// The same, and adds how far these slots move under a force on the one whose blocks these are: what is
+    /// loaded of the blocks serves both.
+    fn gather_and_add_all(
+        blocks: &[f64],
+        forces: &Vectors,
+        own: DVec3,
+        moved: &mut Vectors,
+    ) -> [f64; 3] {
+        let count = blocks.len() / 9;
+        let mut lanes = [[0.0; LANES]; 3];
+        for (r, rows) in blocks.chunks_exact(3 * count).enumerate() {
+            let (x, rest) = rows.split_at(count);
+            let (y, z) = rest.split_at(count);
+            let rows = (x.chunks_exact(LANES).zip(y.chunks_exact(LANES))).zip(z.chunks_exact(LANES));
+            let forces = forces[r][..count].chunks_exact(LANES);
+            let moved = moved[r][..count].chunks_exact_mut(LANES);
+            for ((((x, y), z), force), moved) in rows.zip(forces).zip(moved) {
+                for l in 0..LANES {
+                    moved[l] = plus_three::<FUSED>(moved[l], [x[l], y[l], z[l]], own);
+                    lanes[0][l] = plus_product::<FUSED>(lanes[0][l], x[l], force[l]);
+                    lanes[1][l] = plus_product::<FUSED>(lanes[1][l], y[l], force[l]);
+                    lanes[2][l] = plus_product::<FUSED>(lanes[2][l], z[l], force[l]);
+                }
+            }
+        }
+        lanes.map(|lanes| total::<FUSED>(&lanes, &[], &[]))
     }
 }
 
