@@ -27,7 +27,7 @@ from .relaxation import Relaxation
 Array = NDArray[np.float64]
 
 # What steps may leave, as a share of the work, where the body counts as at rest.
-ENOUGH = 0.01
+ENOUGH = 0.015
 # With so few places that press it is not trusted, with so many it is.
 FEW_PLACES, MANY_PLACES = 8.0, 16.0
 

@@ -86,6 +86,52 @@ def test_each_tick_is_that_of_a_pile(cube, friction, apart):
     assert np.abs(np.array(places) - placements).max() < apart * EDGE
 
 
+def firm_in_servo(cube, ticks=1500):
+    """The upper one, pressed by 3 mm and a quarter firmer there; and where the tip is."""
+    pile = come_down(stacked(cube, 0.5))
+    servo = in_servo(pile, ABOVE, 0.5)
+    down = ABOVE - [0.0, 0.0, 0.003]
+    way = np.linspace(ABOVE, down, 200)
+    servo.follow(np.concatenate([way, np.repeat(down[None], ticks, 0)])[:, None])
+    held = servo.snapshot().held
+    assert held > 0.0
+    servo.set_firmness(0.25 / np.sqrt(held), 0.0, held)
+    servo.follow(np.repeat(down[None], ticks, 0)[:, None])
+    return servo, down
+
+
+def test_the_touched_one_may_be_so_many_times_as_firm(cube):
+    servo, down = firm_in_servo(cube)
+    shot = servo.snapshot()
+    assert 1.2 < shot.firmness <= 1.25
+    firm = stacked(cube, 0.5, [(TIP, Pose.at(ABOVE))])
+    firm.firm([shot.firmness, 1.0])
+    firm.settle()
+    firm.lead([Pose.at(down)])
+    upper, _ = firm.settle()
+    force = upper.tools[0].force
+    assert shot.fingers[0].contact_force[2] == pytest.approx(force[2], rel=0.02)
+    assert force[2] > 1.1 * _linear(cube, down)
+
+
+def _linear(cube, down):
+    pile = stacked(cube, 0.5, [(TIP, Pose.at(ABOVE))])
+    pile.settle()
+    pile.lead([Pose.at(down)])
+    return pile.settle()[0].tools[0].force[2]
+
+
+@pytest.mark.parametrize("ticks", [400, 4000])
+def test_in_and_out_of_the_firmer_one_gives_nothing(cube, ticks):
+    servo, down = firm_in_servo(cube)
+    up = 0.0025 * np.sin(np.linspace(0.0, 2 * np.pi, ticks)) ** 2
+    path = down + up[:, None] * [0.0, 0.0, 1.0]
+    forces = servo.sent(path[:, None])[:, 0]
+    assert np.abs(forces).max() > 0.5
+    given = np.einsum("ta,ta->t", forces[1:], np.diff(path, axis=0)).sum()
+    assert given < 1e-3 * np.abs(forces).max() * 0.0025 / 2
+
+
 def test_it_looks_as_it_does_in_the_pile(cube):
     path = press()[:160]
     pile = come_down(stacked(cube, 0.0, [(TIP, Pose.at(path[0]))]))
