@@ -26,6 +26,8 @@ from .shapes import LinearShape, Shape, pressed_by
 STAYS, MOST_LOOKS = 2e-3, 5
 # By this share loads may differ from those under which a body was looked at.
 ALIKE = 0.01
+# Beyond this share of its size a linear body on its way looks otherwise than its law has it.
+SEEN = 0.02
 # Ticks of one part of coming to rest, and between two looks.
 TICKS, BETWEEN = 1000, 200
 
@@ -250,8 +252,12 @@ def _looked(rest: Rest, shape: Shape, times: float, loads: list[FingerLoad]) -> 
 
 
 def _shown(rest: Rest, shape: Shape, times: float) -> Rest:
+    """A body on its way: as its law has it where it is bent so far that it would be seen."""
     loads = _loads(rest, times)
     if isinstance(shape, LinearShape) or not loads:
+        return rest
+    linear = rest.displacements()
+    if np.abs(linear).max() < SEEN * float(np.ptp(rest.body.mesh.nodes, axis=0).max()):
         return rest
     nodes = np.concatenate([one.nodes for one in loads])
     forces = np.concatenate([one.forces for one in loads])
