@@ -96,7 +96,7 @@ class Resting:
                 fingers=[finger(tip, pose) for tip, pose in tools],
             )
         self._tools = tuple(tool for tool, _ in tools)
-        self._supports = list(supports)
+        self._supports, self._friction = list(supports), settings.friction
 
     @property
     def bodies(self) -> tuple[SoftBody]:
@@ -252,7 +252,9 @@ class Resting:
     def rest(self) -> Rest:
         """Where the body is now."""
         placement = Pose(self._native.position, self._native.rotation)
-        told = zip(self._native.touches(), self._pressing(placement), strict=True)
+        slides = [self._friction == 0.0] * len(self._tools)
+        slides += [support.friction == 0.0 for support in self._supports]
+        told = zip(self._native.touches(), self._pressing(placement), slides, strict=True)
         touches = [_touch(self.body, placement, *one) for one in told]
         return Rest(
             self.body,
@@ -271,7 +273,11 @@ class Resting:
 
 
 def _touch(
-    body: SoftBody, placement: Pose, told: RestTouch, by: tuple[Tool, Pose] | None
+    body: SoftBody,
+    placement: Pose,
+    told: RestTouch,
+    by: tuple[Tool, Pose] | None,
+    slides: bool,
 ) -> BodyTouch:
     turn = placement.rotation.T
     return BodyTouch(
@@ -284,4 +290,5 @@ def _touch(
         nodes=body.mesh.surface_nodes[told["nodes"]],
         nodal_forces=told["nodal_forces"],
         by=by,
+        slides=slides,
     )

@@ -44,9 +44,9 @@ class _Look:
 
 @dataclass(eq=False)
 class Firming:
-    """Follows a servo's touch; ``tool`` is what all its fingers press with, where it slides, and
-    ``supports`` are all that bear a body which nobody holds. Snapshots are as the body sees them
-    (``Snapshot.seen_from_body``).
+    """Follows a servo's touch. ``tool`` is what all its fingers press with, of a pinned body one
+    that slides; of one that nobody holds ``slides`` tells, and ``supports`` bear it. Snapshots are
+    as the body sees them (``Snapshot.seen_from_body``).
 
     Between calls of :meth:`follow` a thread may be at work.
 
@@ -57,6 +57,7 @@ class Firming:
     servo: Firmed
     body: SoftBody
     tool: Tool | None = None
+    slides: bool = True
     supports: Sequence[Floor | Support] = ()
     _finding: Future[Firmness] | None = None
     _worker: ThreadPoolExecutor = field(
@@ -139,16 +140,19 @@ class Firming:
         nearest = np.argmin(away, axis=0)
         return [
             FingerLoad(
-                nodes[own], forces[own], by=Setting(*one, self.body), firmness=snapshot.firmness
+                nodes[own],
+                forces[own],
+                by=Setting(*one, self.body, support.friction == 0.0),
+                firmness=snapshot.firmness,
             )
-            for number, one in enumerate(by)
+            for number, (one, support) in enumerate(zip(by, self.supports, strict=True))
             if (own := nearest == number).any()
         ]
 
     def _setting(self, finger: FingerSnapshot) -> Setting | None:
         if self.tool is None or not len(finger.points):
             return None
-        return Setting(self.tool, Pose(finger.proxy, finger.orientation), self.body)
+        return Setting(self.tool, Pose(finger.proxy, finger.orientation), self.body, self.slides)
 
     def close(self) -> None:
         """End; does not wait."""

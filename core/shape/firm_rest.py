@@ -270,7 +270,7 @@ def _loads(rest: Rest, times: float) -> list[FingerLoad]:
         FingerLoad(
             touch.nodes,
             touch.nodal_forces / times,
-            by=None if touch.by is None else Setting(*touch.by, rest.body),
+            by=None if touch.by is None else Setting(*touch.by, rest.body, touch.slides),
             firmness=times,
         )
         for touch in rest.touches

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.contact.tool.pose import Pose
-from ...core.contact.tool.tools import Tool
 from ...core.errors import PalpateError
 from ...core.rest.prop import WORLD
 from ...core.servo.firming import Firming
@@ -69,7 +68,8 @@ class ForceLoop:
 
     def __post_init__(self) -> None:
         supports = () if self.prop is None else self.prop.supports
-        self.firming = Firming(self.servo, self.drawn.body, self._sliding, supports)
+        self.firming = Firming(self.servo, self.drawn.body, supports=supports)
+        self._tell_tool()
 
     @classmethod
     def prepare(
@@ -208,16 +208,16 @@ class ForceLoop:
         self._turns[finger] = np.array(turn)
         self._set()
 
-    @property
-    def _sliding(self) -> Tool | None:
-        """The tool; none where friction holds it on a pinned body."""
-        sticks = self.settings.servo.static_friction and self.prop is None
-        return None if sticks else self.tip.tool
+    def _tell_tool(self) -> None:
+        # Where friction holds it on a pinned body, that is led by its linear forces.
+        self.firming.slides = not self.settings.servo.static_friction
+        is_told = self.firming.slides or self.prop is not None
+        self.firming.tool = self.tip.tool if is_told else None
 
     def _set(self) -> None:
         turns = [self._turns.get(k, np.eye(3)) for k in range(max(self._turns, default=-1) + 1)]
         chosen = _under(self.settings.servo, self.tip, self.prop)
-        self.firming.tool = self._sliding
+        self._tell_tool()
         self.servo.set(replace(chosen, enabled=self._enabled, orientations=turns))
 
     def carry_out(self, effect: SetDown | Move | SwitchForce) -> None:

@@ -18,11 +18,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """A tool where it is, and the body as it touches it, with its imprint."""
+    """A tool where it is, and the body as it touches it, with its imprint; whether it ``slides``
+    without friction.
+    """
 
     tool: Tool
     pose: Pose
     body: SoftBody
+    slides: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +33,8 @@ class FingerLoad:
     """Load of one finger by the linear force law: forces (k, 3), N, on nodes (k,) of the mesh.
 
     ``sticks``: a point, which moves its place by all of its way; a tool's places may slide. ``by``:
-    the tool, where it is known and slides without friction. ``firmness``: how many times as firm
-    the body was under it, which tells what it weighs beside its forces.
+    the tool, where it is known; of a pinned body one that slides. ``firmness``: how many times as
+    firm the body was under it, which tells what it weighs beside its forces.
     """
 
     nodes: NDArray[np.int64]

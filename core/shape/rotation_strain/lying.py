@@ -82,8 +82,12 @@ class Loose:
             _, normals = load.by.tool.distance(load.by.pose.to_tool(there))
             out = normals @ load.by.pose.rotation.T
             push = np.maximum(np.einsum("ki,ki->k", out, own[pressed]), 0.0)
-            pushes[pressed] += push[:, None] * out
-            friction[number] = own.sum(axis=0) - push @ out
+            if load.by.slides:
+                # Spread over nodes beside them, pushes are not quite along the normals there.
+                pushes[pressed] += own[pressed]
+            else:
+                pushes[pressed] += push[:, None] * out
+                friction[number] = own.sum(axis=0) - push @ out
             rows = np.einsum("ki,kiq->kq", out, motions.of_nodes[pressed])
             square += (push[:, None] * rows).T @ rows
         resisted, basis = np.linalg.eigh(square)

@@ -84,7 +84,7 @@ def test_at_rest_it_presses_as_without_a_clock(laid, eventually):
     servo = laid.servo(START, tip=TIP)
     servo.follow(down(0.0, 300))
     servo.follow(down(DEPTH, 2000))
-    firming = Firming(servo, body, TIP, laid.corner())
+    firming = Firming(servo, body, TIP, supports=laid.corner())
 
     def rests():
         before = servo.snapshot().firmness
