@@ -6,8 +6,10 @@ use super::settling::{AT_GOAL, Restless, SHORTEST, Settles, have_stayed};
 
 /// What comes in does so in ticks that are so short beside the shortest others.
 const INSTANT: f64 = 1e-3;
-/// Strides in which they come in at most.
+/// Strides in which they come in at most, and so many when they are there: friction may go to and fro for ever
+/// between two ways to hold the body.
 const MOST_STRIDES_IN: usize = 2000;
+const MOST_THERE: usize = 30;
 
 impl Resting {
     /// What overlaps the body where it lies comes in from outside, while the body stays there: so a
@@ -29,12 +31,13 @@ impl Resting {
             }
         }
         let instant = INSTANT * SHORTEST * self.longest_tick();
-        let mut before = self.wrenches();
+        let (mut before, mut there) = (self.wrenches(), 0);
         for _ in 0..MOST_STRIDES_IN {
             self.tick(instant, false)?;
             self.prop.placement = placement;
             let now = self.wrenches();
-            if self.are_at_goals(AT_GOAL) && have_stayed(&before, &now) {
+            there += usize::from(self.are_at_goals(AT_GOAL));
+            if there == MOST_THERE || (there > 0 && have_stayed(&before, &now)) {
                 break;
             }
             before = now;
