@@ -4,10 +4,10 @@
 
 A cube of 6 cells an edge and one of 12 are pressed by the same balls, aside of their nodes, to
 three quarters of a radius: by a contact of Newton's method
-(:mod:`palpate.benchmarks.measuring.shape.pressed_solid`) on either mesh, and on the coarse one as
-*Real* feels and draws it and as *Linear* does. Printed are the force of the fine mesh at 1 Pa, mm2,
-and how far the others are off it: force, and drawn surface, root of the mean square of all that
-moves on the top of the fine mesh.
+(:mod:`palpate.benchmarks.measuring.shape.pressed.pressed_solid`) on either mesh, and on the coarse
+one as *Real* feels and draws it and as *Linear* does. Printed are the force of the fine mesh at
+1 Pa, mm2, and how far the others are off it: force, and drawn surface, root of the mean square of
+all that moves on the top of the fine mesh.
 
 Of a body in a file the N-th place of ``benchmarks/shape/at_depth.py`` is pressed by its ball, to a
 half, three quarters and one radius, beside the same body with every tetrahedron cut in eight; there
@@ -31,15 +31,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from palpate.benchmarks.measuring.refined import refined
-from palpate.benchmarks.measuring.shape.deep_press import (
+from palpate.benchmarks.measuring.shape.pressed.deep_press import (
     BALL_DEPTHS,
     BALL_EDGES,
     PLACES_SEED,
     mesh_of,
     places_on,
 )
-from palpate.benchmarks.measuring.shape.pressed_solid import PressedSolid
-from palpate.benchmarks.measuring.shape.pressers import Ball, Presser
+from palpate.benchmarks.measuring.shape.pressed.pressed_solid import PressedSolid
+from palpate.benchmarks.measuring.shape.pressed.pressers import Ball, Presser
 from palpate.core.body.drawn_map import DrawnMap
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.single_press import press_tool

@@ -3,8 +3,8 @@
     python benchmarks/shape/at_depth.py [--laws rubber ...] [--bodies cube ...] [--places N]
 
 The truth is a contact of the law's solid with smoothed strains, by Newton's method
-(:mod:`palpate.benchmarks.measuring.shape.deep_press`), on the same tetrahedra; a Poisson's ratio of
-0.45, of foam and fibres 0.2. For every press the table has
+(:mod:`palpate.benchmarks.measuring.shape.pressed.deep_press`), on the same tetrahedra; a Poisson's
+ratio of 0.45, of foam and fibres 0.2. For every press the table has
 
 - the force at 1 Pa, mm2, along the press; by how much the linear and the *real* one are off
   (:mod:`palpate.core.shape.felt`);
@@ -27,13 +27,8 @@ import sys
 from collections.abc import Iterator
 from itertools import product
 
-from palpate.benchmarks.measuring.shape.deep_press import (
-    BODIES,
-    LAWS,
-    Bench,
-    Row,
-    rows_of,
-)
+from palpate.benchmarks.measuring.shape.pressed.deep_press import BODIES, LAWS, Bench, rows_of
+from palpate.benchmarks.measuring.shape.pressed.rows import Row, head, holds, written
 from palpate.core.contact.place import nearest_place
 from palpate.core.law.of_material import RUBBER
 
@@ -43,10 +38,6 @@ CUBE_RADIUS = 0.012
 ISSUED = {1 / 12: 5.56, 1 / 3: 43.9, 1 / 2: 78.9, 3 / 4: 140.6, 1.0: 208.4, 4 / 3: 302.7}
 # At a twelfth the contact is narrower than a triangle, and the other's triangles are others.
 AGREEMENT = 0.11
-# The real force: to half a radius and a fifth of the thickness, and beyond.
-NEAR, FAR = 0.05, 0.10
-# The drawn surface; and where few places press, or points crush.
-DRAWN, DRAWN_COARSELY, MANY_PLACES = 0.03, 0.30, 16.0
 
 
 def issued_rows(bench: Bench) -> Iterator[tuple[Row, float]]:
@@ -55,33 +46,6 @@ def issued_rows(bench: Bench) -> Iterator[tuple[Row, float]]:
     depths = [CUBE_RADIUS * share for share in ISSUED]
     rows = bench.by_ball(top, CUBE_RADIUS, depths, 0.05, "ball of 12 mm")
     yield from zip(rows, ISSUED.values(), strict=True)
-
-
-def written(row: Row) -> str:
-    """A line of the table."""
-    drawn = "".join(f"{100 * error:9.1f}" for error in row.drawn)
-    return (
-        f"{row.name:<26}{row.depth:7.3f}{row.share:7.3f}{row.true:10.2f}"
-        f"{100 * (row.linear - 1):+9.1f}{100 * (row.real - 1):+9.1f}{drawn}{row.places:8.0f}"
-        f"{'' if row.is_whole else '   no rest so deep'}"
-        f"{'' if row.is_stable else '   the truth is not stable'}"
-    )
-
-
-def holds(row: Row) -> bool:
-    """Whether the force and the drawn surface are as near as promised; says where they are not."""
-    press = f"{row.name}, {row.depth:.3g}"
-    is_point = "point" in row.name
-    is_told = row.is_near if is_point else row.places >= MANY_PLACES
-    most = NEAR if row.is_near and is_told else FAR
-    most_drawn = DRAWN if is_told else DRAWN_COARSELY
-    is_felt = abs(row.real - 1.0) <= most
-    is_drawn = not row.is_stable or row.drawn[1] <= most_drawn
-    if not is_felt:
-        print(f"CLAIM BROKEN: {press}: the real force is not within {most:.0%}")
-    if not is_drawn:
-        print(f"CLAIM BROKEN: {press}: the drawn surface is not within {most_drawn:.0%}")
-    return is_felt and is_drawn
 
 
 def main() -> int:
@@ -95,8 +59,7 @@ def main() -> int:
     )
     parser.add_argument("--places", type=int, default=2, metavar="N", help="places of each body")
     options = parser.parse_args()
-    heads = "".join(f"{head:>9}" for head in ("linear", "real", "drawn", "real"))
-    print(f"{'':<26}{'depth':>7}{'share':>7}{'truth':>10}{heads}{'places':>8}")
+    print(head())
     kept = []
     for law, name in product(options.laws, options.bodies):
         bench = Bench.of(name, law)

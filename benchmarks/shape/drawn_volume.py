@@ -19,7 +19,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.benchmarks.measuring.shape.deep_press import BALL_EDGES, BODIES, Bench, places_on
+from palpate.benchmarks.measuring.shape.pressed.deep_press import (
+    BALL_EDGES,
+    BODIES,
+    Bench,
+    places_on,
+)
 from palpate.benchmarks.shape.strokes_at_depth import shaped, strokes
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.single_press import press_tool

@@ -5,10 +5,10 @@
 A hand holds a patch of three edges where the body reaches farthest from its pins, and bends it
 aside by three tenths of that reach, in two directions, pulls it by a fifth, and turns it by 45 and
 90 degrees, as *Grab*, *Pull* and *Twist* do. The truth is Newton's method by the law's solid
-(:mod:`palpate.benchmarks.measuring.shape.pressed_solid`), with the held nodes where the linear body
-has them. For every stroke the table has the force along the way over the linear one, true and as
-*Real* tells it, and the largest errors of the drawn surface, linear and *Real*, as shares of the
-largest displacement.
+(:mod:`palpate.benchmarks.measuring.shape.pressed.pressed_solid`), with the held nodes where the
+linear body has them. For every stroke the table has the force along the way over the linear one,
+true and as *Real* tells it, and the largest errors of the drawn surface, linear and *Real*, as
+shares of the largest displacement.
 
 Claimed: the force is within 10 %, the drawn surface within 3 %, but for the strokes in
 :data:`BEYOND`. The exit status tells whether that holds.
@@ -25,7 +25,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from palpate.benchmarks.measuring.shape.deep_press import BODIES, LAWS, Bench, farthest_off
+from palpate.benchmarks.measuring.shape.pressed.deep_press import BODIES, LAWS, Bench, farthest_off
 from palpate.core.contact.near_field.surface_shape import node_normals
 from palpate.core.contact.place import nearest_place
 from palpate.core.grip.held_patch import Answer, HeldPatch

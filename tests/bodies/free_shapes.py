@@ -32,15 +32,18 @@ def free_ball(
     radius: float, cells: int, young_modulus: float = 100_000.0, density: float = 1000.0
 ) -> SoftBody:
     """A ball about (0, 0, radius): a block of ``cells`` each way, blown up."""
-    cube = block_mesh((2.0, 2.0, 2.0), (cells, cells, cells))
+    mesh = blown_up(block_mesh((2.0, 2.0, 2.0), (cells, cells, cells)), radius)
+    return baked_body(mesh, NO_PINS, 0.3, young_modulus, density=density)
+
+
+def blown_up(cube: TetMesh, radius: float) -> TetMesh:
+    """A ball about (0, 0, radius) of a cube from the origin, its edge 2 m long."""
     at = cube.nodes - 1.0
     at[:, :2] *= 0.5 + 0.5 * np.abs(at[:, :2])
     length = np.linalg.norm(at, axis=1)
     blown = np.abs(at).max(axis=1) / np.where(length > 0.0, length, 1.0)
     nodes = radius * (at * blown[:, None] + np.array([0.0, 0.0, 1.0]))
-    return baked_body(
-        TetMesh.checked(nodes, cube.tets), NO_PINS, 0.3, young_modulus, density=density
-    )
+    return TetMesh.checked(nodes, cube.tets)
 
 
 def shell_ball(radius: float, count: int, growth: float) -> TetMesh:

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from palpate.benchmarks.measuring.bodies import tets_of
-from palpate.benchmarks.measuring.shape.pressed_solid import Pressed, PressedSolid
-from palpate.benchmarks.measuring.shape.pressers import Ball, Presser, Wall
+from palpate.benchmarks.measuring.shape.pressed.pressed_solid import Pressed, PressedSolid
+from palpate.benchmarks.measuring.shape.pressed.pressers import Ball, Presser, Wall
+from palpate.benchmarks.measuring.shape.pressed.rows import Row
 from palpate.benchmarks.measuring.standing import standing_body
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.place import Place, nearest_place
@@ -60,36 +61,6 @@ def mesh_of(name: str) -> tuple[TetMesh, NDArray[np.int64]]:
         mesh = block_mesh((0.12, 0.02, 0.02), (24, 4, 4))
         return mesh, np.flatnonzero(mesh.nodes[:, 0] == 0.0)
     return tets_of(name)
-
-
-@dataclass(frozen=True, eq=False)
-class Row:
-    """A press.
-
-    Attributes
-    ----------
-    name : of the press.
-    depth, share : over the radius of a ball, of the part's thickness.
-    is_near : by half a radius, or a fifth of the part, at most.
-    places : of the surface's triangles, three each, that press; one of a point.
-    is_stable : whether the truth is a rest, and no equilibrium that the body leaves.
-    true : the force at 1 Pa, mm2, along the press.
-    linear, real : forces over it.
-    is_whole : whether the body's own rest was found as deep as that.
-    drawn : largest errors, linear and real, over the largest displacement.
-    """
-
-    name: str
-    depth: float
-    share: float
-    is_near: bool
-    places: float
-    is_stable: bool
-    true: float
-    linear: float
-    real: float
-    is_whole: bool
-    drawn: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
