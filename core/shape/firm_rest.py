@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol, TypeVar
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -225,8 +224,10 @@ class _Looked:
         return replace(rest, deformed=self.deformed, elastic=elastic)
 
 
-# What each body was last seen to be: one that is laid down again where it lay is not looked at.
-_last: WeakKeyDictionary[SoftBody, _Looked] = WeakKeyDictionary()
+# What each of the last bodies was seen to be: one that is laid down again where it lay is not
+# looked at.
+_last: dict[SoftBody, _Looked] = {}
+MOST_KEPT = 8
 
 
 def _firmness_of(body: SoftBody, shape: Shape, now: float) -> float:
@@ -237,6 +238,9 @@ def _firmness_of(body: SoftBody, shape: Shape, now: float) -> float:
 def _look_at(rest: Rest, shape: Shape, times: float) -> _Looked:
     loads, last = _loads(rest, times), _last.get(rest.body)
     if last is None or last.shape is not shape or not alike(loads, last.loads, ALIKE):
+        _last.pop(rest.body, None)
+        if len(_last) >= MOST_KEPT:
+            del _last[next(iter(_last))]
         _last[rest.body] = last = _looked(rest, shape, times, loads)
     return last
 

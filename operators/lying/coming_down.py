@@ -51,11 +51,6 @@ class Alone:
         return self.free.firm.rests[0]
 
     @property
-    def young_modulus(self) -> float:
-        """Pascal."""
-        return self.free.resting.young_modulus
-
-    @property
     def bodies(self) -> tuple[SoftBody]:
         """It, at its object's density."""
         return (self.free.resting.body,)
@@ -131,7 +126,7 @@ class Alone:
 
     def _drop(self) -> None:
         """Leave out a long way down, where no hand has it."""
-        if not self.rest.tools:
+        if not self.free.resting.rest.tools:
             self.free.drop(LANDING * self.size)
 
 

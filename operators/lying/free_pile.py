@@ -63,11 +63,6 @@ class FreePile:
         return self.firm.rests[0]
 
     @property
-    def young_modulus(self) -> float:
-        """Of the first one, pascal."""
-        return self.bodies[0].young_modulus
-
-    @property
     def native(self) -> tuple[Body, PropAmong]:
         """The first one as a servo has it, and as it is laid down among the others there.
 

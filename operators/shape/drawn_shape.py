@@ -196,7 +196,7 @@ def kept_shape(thing: bpy.types.Object, drawn: DrawnBody) -> Shape:
     return LinearShape(drawn.at_rest)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=8)
 def _last_real(body: SoftBody) -> Shape:
     """Prepared once for the many strokes on an object, and on those beside it."""
     return shape(body, "real")
