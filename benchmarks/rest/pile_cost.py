@@ -5,7 +5,9 @@
 Cubes of 50 mm with about 1,700 nodes stand on each other, with friction and without, and 8 of them
 between boards, 16 colliders with the floor; times are the processor's, of the tick alone. Two cubes
 are then pressed by a fingertip of 8 mm, by the pile's own ticks, which take as long as they need,
-and by the servo's whole ones, which are bounded. The exit status tells whether 8 bodies take less
+and by the servo's whole ones, which are bounded, five times in the same way: of each of these ticks
+the least time counts, for what a tick computes is the same each time, and what else the machine
+does is not. The exit status tells whether 8 bodies take less
 than 16 ms, between boards a frame of Blender's 24 a second, and the press in the servo 0.3 ms at
 the median and 0.7 at the worst, as a loop of 1 kHz wants it. ``--picture`` draws how the cost grows
 with bodies and contacts.
@@ -43,6 +45,8 @@ BOARDS = 15
 FRAMED, ALONE, FRAME = 8, 16.0, 1000.0 / 24.0
 # Of a press in the servo, ms: the median and the worst.
 MEDIAN, WORST = 0.3, 0.7
+# So often the same press is timed.
+ROUNDS = 5
 FRICTIONS = (0.0, 0.5)
 
 
@@ -88,7 +92,7 @@ def costs(pile: Pile, goals: list[Pose], ticks: int) -> tuple[np.ndarray, int]:
 
 
 def servo_costs(body: SoftBody, friction: float, goals: list[Pose]) -> np.ndarray:
-    """Processor's time of each of the servo's ticks, (ticks,), ms, the cubes having come down."""
+    """Processor's time of each of the servo's ticks, (rounds, ticks), ms; cubes have landed."""
     settings = PileSettings(friction=friction)
     size = float(np.ptp(body.mesh.nodes[:, 2]))
     upper, lower = Pose.at([0.0, 0.0, size + 2.0 * ABOVE]), Pose.at([0.0, 0.0, ABOVE])
@@ -96,11 +100,13 @@ def servo_costs(body: SoftBody, friction: float, goals: list[Pose]) -> np.ndarra
     pile = Pile(laid, [Floor(friction=friction)], fingertips=[TIP], settings=settings)
     feel = Settings(body.young_modulus, static_friction=friction, dynamic_friction=friction)
     start = goals[0].position
-    fingers = SteppedFingers(pile.native_body, start[None], feel, prop=pile.laid())
-    fingers.set_tool(native_tool(body, pile.native_body, TIP), np.eye(3))
-    fingers.follow(np.repeat(start[None, None], LANDING, 0))
-    took: np.ndarray = fingers.costs(np.array([goal.position for goal in goals])[:, None])
-    return 1e3 * took
+    taken = []
+    for _ in range(ROUNDS):
+        fingers = SteppedFingers(pile.native_body, start[None], feel, prop=pile.laid())
+        fingers.set_tool(native_tool(body, pile.native_body, TIP), np.eye(3))
+        fingers.follow(np.repeat(start[None, None], LANDING, 0))
+        taken.append(fingers.costs(np.array([goal.position for goal in goals])[:, None]))
+    return 1e3 * np.array(taken)
 
 
 def drawn(rows: list[tuple[int, float, int, float]], file: Path) -> None:
@@ -160,12 +166,14 @@ def main() -> int:
         pile = stack(body, 2, friction, pressed=True)
         costs(pile, [], LANDING)
         alone, _ = costs(pile, goals, len(goals))
-        took = servo_costs(body, friction, goals)
+        rounds = servo_costs(body, friction, goals)
+        took = rounds.min(axis=0)
         median, worst = float(np.median(took)), float(took.max())
         failed = failed or median > MEDIAN or worst > WORST
         print(
             f"two and a finger, friction {friction}: median {np.median(alone):.3f}, worst "
-            f"{alone.max():.3f}; in the servo {median:.3f}, {worst:.3f}"
+            f"{alone.max():.3f}; in the servo {median:.3f}, {worst:.3f} "
+            f"(of all rounds {np.median(rounds):.3f}, {rounds.max():.3f})"
         )
     print("as claimed" if not failed else "NOT AS CLAIMED")
     return int(failed)

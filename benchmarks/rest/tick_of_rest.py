@@ -5,7 +5,8 @@
 A cube of 50 mm with about 1,700 nodes lies on a floor with friction; a fingertip of 8 mm lands on
 it, slides and leaves. First by `Resting`: ticks are hurried, bounded as the servo's are; times are
 those of one call, from outside, with all forces read by nobody. Then by the servo's own whole
-ticks, the processor's time of each. Claimed: 300 us at the median, 700 at the worst.
+ticks, the processor's time of each, the least of five rounds: what a tick computes is the same each
+time, and what else the machine does is not. Claimed: 300 us at the median, 700 at the worst.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ from palpate.tests.bodies.free_shapes import free_block
 DT = 1e-3
 TIP = sphere(0.008)
 MEDIAN, WORST = 300.0, 700.0
+# So often the same touch is timed.
+ROUNDS = 5
 
 
 def path(ticks: int) -> np.ndarray:
@@ -69,27 +72,30 @@ def main() -> int:
             f"worst {most:.0f}; {int(np.median(points))} pressed points, {max(points)} at most"
         )
         failed = failed or median > MEDIAN
-        took = 1e6 * servo_costs(body, places, settings)
+        rounds = 1e6 * servo_costs(body, places, settings)
+        took = rounds.min(axis=0)
         median, most = np.median(took), np.max(took)
         print(
             f"  in the servo: median {median:.0f} us, 99.9 % {np.quantile(took, 0.999):.0f}, "
-            f"worst {most:.0f}"
+            f"worst {most:.0f} (of all rounds {np.median(rounds):.0f}, {rounds.max():.0f})"
         )
         failed = failed or median > MEDIAN or most > WORST
     return int(failed)
 
 
 def servo_costs(body: SoftBody, places: np.ndarray, settings: RestSettings) -> np.ndarray:
-    """Processor's time of each tick (ticks,), s, the body having come to rest before."""
+    """Processor's time of each tick (rounds, ticks), s, the body having come to rest before."""
     friction = settings.friction
     native = native_body(body, whole=True, may_move=True)
     feel = Settings(body.young_modulus, static_friction=friction, dynamic_friction=friction)
     prop = native_prop(body, native, [Floor(friction=friction)], settings=settings)
-    fingers = SteppedFingers(native, places[:1], feel, prop=prop)
-    fingers.set_tool(native_tool(body, native, TIP), np.eye(3))
-    fingers.follow(np.repeat(places[:1], 300, 0)[:, None])
-    costs: np.ndarray = fingers.costs(places[:, None])
-    return costs
+    taken = []
+    for _ in range(ROUNDS):
+        fingers = SteppedFingers(native, places[:1], feel, prop=prop)
+        fingers.set_tool(native_tool(body, native, TIP), np.eye(3))
+        fingers.follow(np.repeat(places[:1], 300, 0)[:, None])
+        taken.append(fingers.costs(places[:, None]))
+    return np.array(taken)
 
 
 if __name__ == "__main__":

@@ -50,3 +50,12 @@ macro_rules! widely {
 }
 
 pub(crate) use widely;
+
+widely! {
+    /// Adds so many times some numbers to others.
+    pub(crate) fn add(times: f64, from: &[f64], to: &mut [f64]) {
+        for (to, from) in to.iter_mut().zip(from) {
+            *to = plus_product::<FUSED>(*to, times, *from);
+        }
+    }
+}

@@ -3,12 +3,12 @@
 use glam::{DMat3, DVec3};
 
 use super::contact::MOST_SHARES;
-use crate::algebra::wide::{plus_product, widely};
+use crate::algebra::wide::{add, plus_product, widely};
 
 /// Places at first.
 const ROOM: usize = 128;
 
-/// Three vectors one after the other, each with a place for a register's fourth number.
+/// Three by three numbers, each three with a place for a register's fourth.
 pub(super) type Three = [f64; 12];
 
 /// A vector with a place for a register's fourth number.
@@ -29,6 +29,23 @@ fn row(room: usize) -> usize {
 pub(super) struct Between {
     room: usize,
     blocks: Vec<f64>,
+}
+
+/// How slots move by three forces.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Moved {
+    /// Of each slot an axis after the other, by each of the forces.
+    pub slots: Vec<Three>,
+    /// Memory for blocks that are added up.
+    sums: Vec<f64>,
+}
+
+impl Moved {
+    /// Takes all memory that it ever needs for so many slots.
+    pub(super) fn reserve(&mut self, slots: usize) {
+        self.slots.reserve(slots);
+        self.sums.reserve(NINE * slots);
+    }
 }
 
 impl Between {
@@ -116,54 +133,39 @@ impl Between {
         &blocks[..loaded.len()]
     }
 
-    /// How the first `count` slots move by a unit force along each of some ways, one or three, shared out
-    /// among some.
+    /// How the first `count` slots move by a unit force along each of three ways, shared out among some.
     pub(super) fn move_by(
         &self,
         shares: &[(usize, f64)],
-        ways: &[DVec3],
+        ways: &[DVec3; 3],
         count: usize,
-        moved: &mut Vec<Three>,
+        moved: &mut Moved,
     ) {
-        moved.resize(count, [0.0; 12]);
-        let mut blocks = [&self.blocks[..0]; MOST_SHARES];
-        let mut parts = [0.0; MOST_SHARES];
-        for (part, &(_, share)) in parts.iter_mut().zip(shares) {
-            *part = share;
+        let Moved { slots, sums } = moved;
+        slots.resize(count, [0.0; 12]);
+        let column = |slot: usize| &self.blocks[self.at(0, slot)..][..NINE * count];
+        if let [(slot, share)] = *shares {
+            let ways = turned_over(&ways.map(|way| way * share));
+            return turn(column(slot), &ways, slots);
         }
-        let (blocks, parts) = (self.of(shares, count, &mut blocks), &parts[..shares.len()]);
-        match *ways {
-            [way] => turn_one(blocks, parts, way, moved),
-            [first, second, third] => turn_three(blocks, parts, [first, second, third], moved),
-            _ => debug_assert!(false, "{}", ways.len()),
+        sums.clear();
+        sums.resize(NINE * count, 0.0);
+        for &(slot, share) in shares {
+            add(share, column(slot), sums);
         }
+        turn(sums, &turned_over(ways), slots);
     }
 }
 
-/// The sum of the blocks of a slot, each by its share.
-#[inline(always)]
-fn sum_of<const FUSED: bool>(blocks: &[&[f64]], shares: &[f64], slot: usize) -> Three {
-    let mut sum = [0.0; 12];
-    for (blocks, &share) in blocks.iter().zip(shares) {
-        let block = &blocks[NINE * slot..][..=NINE];
-        for c in 0..3 {
-            for r in 0..4 {
-                sum[4 * c + r] = plus_product::<FUSED>(sum[4 * c + r], share, block[3 * c + r]);
-            }
+/// Of three vectors an axis after the other.
+pub(super) fn turned_over(vectors: &[DVec3; 3]) -> Three {
+    let mut axes = [0.0; 12];
+    for (number, vector) in vectors.iter().enumerate() {
+        for axis in 0..3 {
+            axes[4 * axis + number] = vector[axis];
         }
     }
-    sum
-}
-
-/// What a block makes of a way.
-#[inline(always)]
-fn turned<const FUSED: bool>(block: &Three, way: DVec3) -> [f64; 4] {
-    let mut moved = [0.0; 4];
-    for r in 0..4 {
-        let by_two = plus_product::<FUSED>(way.x * block[r], way.y, block[4 + r]);
-        moved[r] = plus_product::<FUSED>(by_two, way.z, block[8 + r]);
-    }
-    moved
+    axes
 }
 
 widely! {
@@ -185,23 +187,15 @@ widely! {
 }
 
 widely! {
-    /// What the blocks of each slot, added up by their shares, make of a way.
-    fn turn_one(blocks: &[&[f64]], shares: &[f64], way: DVec3, moved: &mut [Three]) {
-        for (slot, moved) in moved.iter_mut().enumerate() {
-            let sum = sum_of::<FUSED>(blocks, shares, slot);
-            moved[..4].copy_from_slice(&turned::<FUSED>(&sum, way));
-        }
-    }
-}
-
-widely! {
-    /// The same of three ways.
-    fn turn_three(blocks: &[&[f64]], shares: &[f64], ways: [DVec3; 3], moved: &mut [Three]) {
-        for (slot, moved) in moved.iter_mut().enumerate() {
-            let sum = sum_of::<FUSED>(blocks, shares, slot);
-            moved[..4].copy_from_slice(&turned::<FUSED>(&sum, ways[0]));
-            moved[4..8].copy_from_slice(&turned::<FUSED>(&sum, ways[1]));
-            moved[8..].copy_from_slice(&turned::<FUSED>(&sum, ways[2]));
+    /// What the block of each slot makes of three ways, of which all are told axis by axis.
+    fn turn(blocks: &[f64], ways: &Three, moved: &mut [Three]) {
+        for (block, moved) in blocks.chunks_exact(NINE).zip(moved) {
+            for r in 0..3 {
+                for k in 0..4 {
+                    let by_two = plus_product::<FUSED>(block[r] * ways[k], block[3 + r], ways[4 + k]);
+                    moved[4 * r + k] = plus_product::<FUSED>(by_two, block[6 + r], ways[8 + k]);
+                }
+            }
         }
     }
 }
@@ -242,12 +236,13 @@ mod tests {
         }
         let ways = [DVec3::new(0.3, -1.0, 0.5), DVec3::Y, DVec3::NEG_X];
         let shares = [(2, 0.75), (5, -0.5), (0, 0.75)];
-        let mut moved = Vec::new();
+        let mut moved = Moved::default();
         between.move_by(&shares, &ways, 7, &mut moved);
+        let moved = moved.slots;
         for (number, &way) in ways.iter().enumerate() {
             for (slot, moved) in moved.iter().enumerate() {
                 let parts = shares.map(|(loaded, share)| block(slot, loaded) * way * share);
-                let told = DVec3::from_slice(&moved[4 * number..]);
+                let told = DVec3::from_array([0, 4, 8].map(|axis| moved[axis + number]));
                 assert!(told.distance(parts.into_iter().sum()) < 1e-12);
             }
         }
@@ -255,7 +250,7 @@ mod tests {
         let forces = shares.map(|(_, share)| (way * share).extend(0.0).to_array());
         between.move_along(&shares, &forces, 7, &mut along);
         for (along, moved) in along.iter().zip(&moved) {
-            assert!((0..3).all(|axis| (along[axis] - moved[axis]).abs() < 1e-12));
+            assert!((0..3).all(|axis| (along[axis] - moved[4 * axis]).abs() < 1e-12));
         }
     }
 }

@@ -27,6 +27,13 @@ impl Shares {
         self.shares[self.count] = (point, share);
         self.count += 1;
     }
+
+    /// Whether they are those of the same points, within so much of each.
+    pub(super) fn is_near(&self, other: &Self, most: f64) -> bool {
+        self.count == other.count
+            && (self.iter().zip(other.iter()))
+                .all(|(one, two)| one.0 == two.0 && (one.1 - two.1).abs() <= most)
+    }
 }
 
 impl std::ops::Deref for Shares {

@@ -42,6 +42,8 @@ pub struct Member {
     /// Middle of its outline, how far that reaches, and its corners, m.
     pub(super) around: (DVec3, f64),
     outline: [DVec3; 2],
+    /// How far a place gives way to a force, about, m/N at unit modulus.
+    gives: f64,
     looks: Arc<Looks>,
     patch: Patch,
     /// The slot of each contact point, or none.
@@ -71,7 +73,9 @@ impl Member {
         let high = (nodes.iter()).fold(DVec3::NEG_INFINITY, |high, &at| high.max(at));
         let middle = (low + high) * 0.5;
         let reach = (nodes.iter()).fold(0.0_f64, |most, at| most.max(at.distance(middle)));
+        let stiffness: f64 = (touchable.own().body().contact_blocks.iter().map(mean)).sum();
         Self {
+            gives: nodes.len() as f64 / stiffness,
             slot_of: vec![NONE; count],
             wanted: Vec::with_capacity(MOST_POINTS),
             wanted_in: vec![0; count],
@@ -248,15 +252,34 @@ impl Member {
 
     /// It moves as a whole by its weight and what presses it.
     pub(super) fn move_on(&mut self) {
-        let Some(mobility) = &self.mobility else {
+        if self.mobility.is_none() {
             return;
-        };
-        let loads = self.slots().iter();
-        let loads = loads.map(|slot| (slot.arm, slot.force * self.young_modulus));
-        self.motion = mobility.motion(loads);
+        }
+        self.motion = self.driven();
         if self.motion.is_finite() {
             self.placement = self.placement.moved(&self.motion);
         }
+    }
+
+    /// How its weight and what presses it move it as a whole in this tick.
+    pub(super) fn driven(&self) -> Motion {
+        let loads = self.slots().iter();
+        let loads = loads.map(|slot| (slot.arm, slot.force * self.young_modulus));
+        (self.mobility).map_or_else(Motion::default, |mobility| mobility.motion(loads))
+    }
+
+    /// Where a force acts that contact points share, m in the body's axes.
+    #[inline]
+    pub(super) fn arm(&self, shares: &[(u32, f64)]) -> DVec3 {
+        let arms = shares.iter();
+        arms.map(|&(point, share)| self.slots()[self.slot(point)].arm * share)
+            .sum()
+    }
+
+    /// How far from its middle any of it is, m.
+    #[inline]
+    pub(super) fn reach(&self) -> f64 {
+        self.around.1
     }
 
     /// Takes all memory that it ever needs while it looks at so many points at most.
@@ -268,7 +291,6 @@ impl Member {
 
     /// How far a place of it gives way to a force, about, m/N.
     pub(super) fn gives(&self) -> f64 {
-        let stiffness: f64 = self.body().contact_blocks.iter().map(mean).sum();
-        self.body().nodes.len() as f64 / (stiffness * self.young_modulus)
+        self.gives / self.young_modulus
     }
 }

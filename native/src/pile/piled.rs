@@ -66,7 +66,7 @@ impl Pile {
         let room = self.pace.room;
         (self.members.iter_mut()).for_each(|member| member.reserve(room));
         (self.solver, self.meeting) = (Solver::default(), Meeting::default());
-        self.solver.reserve(room);
+        self.solver.reserve(room, self.members.len());
         self.contacts.reserve(MOST_CONTACTS);
         self.ranked.reserve(MOST_CONTACTS);
         self.fits.reserve(MOST_CONTACTS);

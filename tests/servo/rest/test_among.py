@@ -1,5 +1,7 @@
 """A body that nobody holds among others, in the servo: its ticks are those of a pile."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bodies.free_shapes import free_block
@@ -62,9 +64,13 @@ def press(depth=0.003, ticks=120):
     return ABOVE + np.column_stack([aside, 0.5 * aside, -(depth + 2e-4) * share])
 
 
-@pytest.mark.parametrize(("friction", "apart"), [(0.0, 1e-4), (0.5, 0.03)])
-def test_each_tick_is_that_of_a_pile(cube, friction, apart):
-    path = press()
+@pytest.mark.parametrize(
+    ("pascal", "friction", "apart"),
+    # Soft ones lie for many ticks as they did, as far as their contacts can tell.
+    [(1e5, 0.0, 1e-4), (1e5, 0.5, 0.03), (3e4, 0.0, 1e-4), (3e4, 0.5, 0.03)],
+)
+def test_each_tick_is_that_of_a_pile(cube, pascal, friction, apart):
+    path, cube = press(), replace(cube, young_modulus=pascal)
     pile = come_down(stacked(cube, friction, [(TIP, Pose.at(path[0]))]))
     pile.tick()
     felt, placements = [], []
@@ -81,7 +87,7 @@ def test_each_tick_is_that_of_a_pile(cube, friction, apart):
         told.append(force[0, 0])
         places.append((shot.placement[0], shot.others[0][0]))
     largest = np.abs(felt).max()
-    assert largest > 0.2
+    assert largest > 0.1 * pascal / 1e5
     assert np.abs(np.array(told) - felt).max() < apart * largest
     assert np.abs(np.array(places) - placements).max() < apart * EDGE
 

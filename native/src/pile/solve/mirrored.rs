@@ -37,9 +37,40 @@ fn add_tile(matrix: &mut [f64], [row, column]: [usize; 2], count: usize) {
     }
 }
 
+/// Adds what is told in the first rows of all columns behind, turned over: to the first columns of these rows.
+pub(super) fn add_turned(matrix: &mut [f64], first: usize, count: usize) {
+    let (above, below) = matrix[..count * count].split_at_mut(first * count);
+    for row in (first..count).step_by(TILE) {
+        for column in (0..first).step_by(TILE) {
+            for j in column..(column + TILE).min(first) {
+                let told = &above[j * count..][..count];
+                for i in row..(row + TILE).min(count) {
+                    below[(i - first) * count + j] += told[i];
+                }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_told_turned_over_is_added() {
+        const COUNT: usize = 21;
+        for first in [0, 5, 10, COUNT] {
+            let told: Vec<f64> = (0..COUNT * COUNT).map(|k| (k * k % 101) as f64).collect();
+            let mut matrix = told.clone();
+            add_turned(&mut matrix, first, COUNT);
+            for (k, (&entry, &before)) in matrix.iter().zip(&told).enumerate() {
+                let (i, j) = (k / COUNT, k % COUNT);
+                let is_added = i >= first && j < first;
+                let other = if is_added { told[j * COUNT + i] } else { 0.0 };
+                assert_eq!(entry, before + other);
+            }
+        }
+    }
 
     #[test]
     fn each_entry_is_what_was_told_on_both_sides() {

@@ -1,5 +1,6 @@
 //! Forces of all contacts in a tick: one problem, set up, solved, and handed to the contacts.
 
+mod kept;
 mod mirrored;
 pub(super) mod pace;
 mod products;
@@ -47,9 +48,9 @@ pub(super) struct Given<'a> {
 }
 
 impl Solver {
-    /// Takes all memory that it ever needs for so many contacts.
-    pub fn reserve(&mut self, contacts: usize) {
-        self.system.reserve(contacts);
+    /// Takes all memory that it ever needs for so many contacts of so many bodies.
+    pub fn reserve(&mut self, contacts: usize, bodies: usize) {
+        self.system.reserve(contacts, bodies);
         self.chosen.reserve(super::meeting::MOST_CONTACTS);
         for numbers in [&mut self.limits, &mut self.fading, &mut self.friction] {
             numbers.reserve(contacts);
@@ -91,8 +92,8 @@ impl Solver {
         }));
         let (system, forces, limits) = (&mut self.system, &mut self.forces, &self.limits);
         let rubs = (&self.away[..], |place: usize| limits[place] > 0.0);
-        system.set_up(contacts, chosen, members, rubs);
-        system.add_springs(&self.fading);
+        let told = (&*contacts, &chosen[..]);
+        system.begin(told, rubs);
         self.friction.clear();
         self.friction
             .extend(system.rubs.iter().map(|&place| limits[place]));
@@ -102,6 +103,8 @@ impl Solver {
             let aside = system.directions[place].transpose() * contacts[chosen[place]].aside;
             [aside.y, aside.z]
         }));
+        system.set_up(told, members, (forces, given.pace.may_keep));
+        system.add_springs(&self.fading);
         let rubbed = Rubbed {
             friction: &self.friction,
             pace: given.pace,

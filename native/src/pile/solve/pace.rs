@@ -15,6 +15,8 @@ pub struct Pace {
     pub sweeps: usize,
     /// Multiplications of a solve for the pushes, about.
     pub work: usize,
+    /// How bodies give way may be taken from a tick before, in which they lay nearly as they do.
+    pub may_keep: bool,
 }
 
 impl Pace {
@@ -25,6 +27,7 @@ impl Pace {
         turns: 6,
         sweeps: 8,
         work: usize::MAX / 4,
+        may_keep: false,
     };
     /// What a tick of 1 kHz has time for; what it leaves the next ones do.
     pub const IN_TICK: Self = Self {
@@ -33,5 +36,6 @@ impl Pace {
         turns: 1,
         sweeps: 4,
         work: 500_000,
+        may_keep: true,
     };
 }

@@ -23,34 +23,53 @@ pub(super) struct Side {
     pub last: usize,
 }
 
+/// Three forces on a body as a whole, as its places see it move: an axis after the other, by each force.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Carried {
+    /// How far its centre goes, and how far it is turned about that.
+    pub shift: Three,
+    pub turn: Three,
+}
+
 widely! {
-    /// What moves some slots by three forces, and their body as a whole, as contacts see it: of each force
-    /// the parts along their three directions. Slots carry a contact by their shares; of the body what is
-    /// `carried` tells how far its centre goes, and any place besides, a metre from it along each axis.
-    pub(super) fn seen_by(
+    /// How far contacts are moved by three forces: some slots, which carry them by their shares, and the body
+    /// as a whole. Of each contact an axis after the other, by each of the forces.
+    fn move_sides(
         sides: &[Side],
         shares: &[(usize, f64)],
-        moved: &[Three],
-        carried: &[Three; 4],
-        parts: &mut [Three],
+        slots: &[Three],
+        carried: &Carried,
+        moved: &mut [Three],
     ) {
-        for (side, parts) in sides.iter().zip(parts) {
-            let mut sum = carried[0];
-            for axis in 0..3 {
-                let far = side.arm[axis];
-                for k in 0..12 {
-                    sum[k] = plus_product::<FUSED>(sum[k], far, carried[1 + axis][k]);
+        let Carried { shift, turn } = carried;
+        for (side, moved) in sides.iter().zip(moved) {
+            let mut sum = *shift;
+            for (r, by, with) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+                let (along, back) = (side.arm[with], -side.arm[by]);
+                for k in 0..4 {
+                    let one = plus_product::<FUSED>(sum[4 * r + k], along, turn[4 * by + k]);
+                    sum[4 * r + k] = plus_product::<FUSED>(one, back, turn[4 * with + k]);
                 }
             }
             for &(slot, share) in &shares[side.slots.start..side.slots.end] {
-                let moved = &moved[slot];
+                let slot = &slots[slot];
                 for k in 0..12 {
-                    sum[k] = plus_product::<FUSED>(sum[k], share, moved[k]);
+                    sum[k] = plus_product::<FUSED>(sum[k], share, slot[k]);
                 }
             }
+            *moved = sum;
+        }
+    }
+}
+
+widely! {
+    /// What contacts see of how far they are moved: of each of the forces the parts along their three
+    /// directions.
+    fn look_along(sides: &[Side], moved: &[Three], parts: &mut [Three]) {
+        for ((side, moved), parts) in sides.iter().zip(moved).zip(parts) {
             let along = &side.along;
             for way in 0..3 {
-                let [x, y, z] = [sum[4 * way], sum[4 * way + 1], sum[4 * way + 2]];
+                let [x, y, z] = [moved[way], moved[4 + way], moved[8 + way]];
                 for l in 0..4 {
                     let by_two = plus_product::<FUSED>(x * along[l], y, along[4 + l]);
                     parts[4 * way + l] = plus_product::<FUSED>(by_two, z, along[8 + l]);
@@ -58,4 +77,19 @@ widely! {
             }
         }
     }
+}
+
+/// Both one after the other: in one loop the compiler takes numbers apart that lie beside each other.
+pub(super) fn seen_by(
+    sides: &[Side],
+    shares: &[(usize, f64)],
+    slots: &[Three],
+    carried: &Carried,
+    [moved, parts]: [&mut Vec<Three>; 2],
+) {
+    for memory in [&mut *moved, &mut *parts] {
+        memory.resize(sides.len(), [0.0; 12]);
+    }
+    move_sides(sides, shares, slots, carried, moved);
+    look_along(sides, moved, parts);
 }

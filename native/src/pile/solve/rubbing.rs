@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::pace::Pace;
 use super::system::System;
 use crate::algebra::cholesky::dot_within;
-use crate::algebra::wide::{plus_product, widely};
+use crate::algebra::wide::{add, widely};
 use crate::tool::complementarity::Complementarity;
 use crate::tool::friction::nearer;
 
@@ -31,9 +31,12 @@ pub(super) fn rub(
     slips: &mut Vec<f64>,
 ) {
     let count = system.directions.len();
-    problem.begin(count);
-    for i in 0..count {
-        (problem.row_mut(i)).copy_from_slice(&system.row(i)[..count]);
+    // Of the same matrix there is a factor.
+    if !(system.is_kept && (0..count).all(|i| problem.own(i) == system.row(i)[i])) {
+        problem.begin(count);
+        for i in 0..count {
+            (problem.row_mut(i)).copy_from_slice(&system.row(i)[..count]);
+        }
     }
     problem.forces[..count].copy_from_slice(&forces[..count]);
     for _ in 0..pace.turns {
@@ -79,15 +82,6 @@ fn push(
         *force = found;
     }
     most
-}
-
-widely! {
-    /// Adds so many times some numbers to others.
-    fn add(times: f64, from: &[f64], to: &mut [f64]) {
-        for (to, from) in to.iter_mut().zip(from) {
-            *to = plus_product::<FUSED>(*to, times, *from);
-        }
-    }
 }
 
 widely! {
