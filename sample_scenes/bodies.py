@@ -58,6 +58,9 @@ def attach(thing: bpy.types.Object, tets: Tets) -> None:
     """Give an object these tetrahedra, as a bake would have, and let Rebuild Body do the rest."""
     scene = bpy.context.scene
     baked = thing.palpate
+    if not baked.is_property_set("shape"):
+        # As what is made soft anew begins.
+        baked.shape = "ROTATION_STRAIN"
     for name, array in zip(palpate("operators.object.embedded_body").ARRAYS, tets, strict=True):
         kind = np.float64 if array.dtype.kind == "f" else np.int32
         baked[name] = array.astype(kind).ravel()

@@ -36,7 +36,8 @@ def pinch_scene() -> list[bpy.types.Object]:
     cubes = []
     for name, x, places in (("Nodes", -APART, ON_NODES), ("Triangles", APART, IN_TRIANGLES)):
         cube = scenes.paper_cube(scene, name)
-        cube.location.x = x
+        # As the paper's figure is.
+        cube.palpate.shape, cube.location.x = "LINEAR", x
         for side, place, inward in zip(("Left", "Right"), places, (1.0, -1.0), strict=True):
             here = (place[0] + x, place[1], place[2])
             empty = leading_empty(scene, f"{name} {side}", 0.004)

@@ -92,6 +92,8 @@ def cube_scene() -> bpy.types.Object:
     """The paper's cube, 50 mm, pinned at the bottom."""
     scene = studio.empty_scene("Cube")
     cube = paper_cube(scene, "Cube")
+    # As its figures are.
+    cube.palpate.shape = "LINEAR"
     aim = (0.0, 0.0, 0.023)
     studio.present(scene, cube, aim, (0.23, -0.28, 0.20), 110.0, 0.14)
     return cube
