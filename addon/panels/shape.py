@@ -70,8 +70,6 @@ def _limit_of(thing: bpy.types.Object) -> str:
             "So large a body is drawn so but for what is finer than a coarse lattice, and felt as "
             "a linear one; a coarser bake is felt, too"
         )
-    if baked.relaxation != "NONE":
-        return "While it gives way with time it is drawn so, and felt as a linear body"
     return ""
 
 

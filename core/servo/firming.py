@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from palpate_servo import FingerSnapshot, Snapshot
 
 from ..body.soft_body import SoftBody
@@ -23,6 +24,8 @@ AHEAD = 1.2
 # Fingers whose forces changed by less than this share press as they did; by less than the other
 # between two calls, they are at rest.
 SAME, AT_REST = 0.03, 1e-6
+
+Array = NDArray[np.float64]
 
 LINEAR = Firmness()
 
@@ -104,15 +107,13 @@ class Firming:
 
     def pressing(self, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
         """Loads of the fingers that touch, and of what bears the body, as a linear one would have
-        them; none of one that gives way with time, which presses as a linear one does.
+        them, of one that gives way with time in the end.
         """
-        if len(snapshot.remembered_nodes):
-            return ()
         surface, firm = self.body.mesh.surface_nodes, snapshot.firmness
         loads = [
             FingerLoad(
                 surface[finger.nodes],
-                finger.nodal_forces / firm,
+                _linear(snapshot, finger.nodes, finger.nodal_forces),
                 sticks=not len(finger.points),
                 by=self._setting(finger),
                 firmness=firm if self.body.is_free else 1.0,
@@ -127,7 +128,7 @@ class Firming:
     def _borne(self, snapshot: Snapshot) -> list[FingerLoad]:
         """Loads of the supports: each of the force on the nodes that are nearest to it."""
         nodes = self.body.mesh.surface_nodes[snapshot.borne_nodes]
-        forces = snapshot.borne_forces / snapshot.firmness
+        forces = _linear(snapshot, snapshot.borne_nodes, snapshot.borne_forces)
         if not self.supports:
             return [FingerLoad(nodes, forces)]
         placement = Pose(*snapshot.placement)
@@ -168,6 +169,18 @@ class Firming:
         if firmness != self._told:
             self._told = firmness
             self.servo.set_firmness(firmness.root, firmness.whole, firmness.reach)
+
+
+def _linear(snapshot: Snapshot, nodes: NDArray[np.int64], forces: Array) -> Array:
+    """Forces (k, 3), N, of a linear body that is as it is now; in the end, if it remembers."""
+    if not len(snapshot.remembered_nodes):
+        return forces / snapshot.firmness
+    number = {int(node): k for k, node in enumerate(snapshot.remembered_nodes)}
+    found = np.zeros_like(forces)
+    for row, node in enumerate(nodes):
+        if (k := number.get(int(node))) is not None:
+            found[row] = snapshot.remembered_forces[k]
+    return found
 
 
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:

@@ -96,7 +96,10 @@ TIPS = {
     "sphere": (sphere(0.006), 0.003),
     "plate": (plate(0.012, 0.01), 0.0004),
 }
-TICKS, SAME = 400, 1e-6
+TICKS = 400
+# How the body relaxes, and how nearly its force in the end is that of one that does not: what it
+# remembers is forgotten at last.
+RELAXING = [((), 1e-6), (((1.5, 0.02), (1.0, 0.06)), 2e-3)]
 
 
 @pytest.fixture(scope="module", params=["cube", "bar"])
@@ -107,8 +110,9 @@ def held_body(request, cube_body):
     return baked_body(mesh, np.flatnonzero(mesh.nodes[:, 0] == 0.0), 0.3, 5_000.0)
 
 
+@pytest.mark.parametrize(("relaxation", "same"), RELAXING, ids=["elastic", "relaxing"])
 @pytest.mark.parametrize("tip", TIPS)
-def test_at_rest_it_presses_as_without_a_clock(held_body, tip, eventually):
+def test_at_rest_it_presses_as_without_a_clock(held_body, tip, relaxation, same, eventually):
     body, (tool, depth) = held_body, TIPS[tip]
     made = shape(body, "real")
     made.wait_for(np.zeros(0, dtype=np.int64))
@@ -125,7 +129,7 @@ def test_at_rest_it_presses_as_without_a_clock(held_body, tip, eventually):
     (touch,) = felt(made, [linear], body.young_modulus).touches
     native = native_body(body, whole=True)
     path = end[None, None] - np.linspace(1.5, 0.0, 100)[:, None, None] * by
-    servo = SteppedFingers(native, path[0], Settings(body.young_modulus))
+    servo = SteppedFingers(native, path[0], Settings(body.young_modulus, relaxation=relaxation))
     if tool is not None:
         servo.set_tool(native_tool(body, native, tool), turn, 0)
     servo.follow(path)
@@ -135,11 +139,12 @@ def test_at_rest_it_presses_as_without_a_clock(held_body, tip, eventually):
         before = servo.snapshot().firmness
         firming.follow(servo.snapshot(), made, body.young_modulus)
         servo.follow(np.tile(end, (TICKS, 1, 1)))
-        return not firming.looks and servo.snapshot().firmness == before != 1.0
+        now = servo.snapshot().firmness
+        return not firming.looks and abs(now - before) <= 1e-2 * same and now != 1.0
 
     eventually(rests, "the firmness of the press")
     firming.close()
     force = servo.snapshot().contact_force
     assert abs(np.linalg.norm(touch.force) / np.linalg.norm(linear.force) - 1.0) > 1e-3
-    np.testing.assert_allclose(force, touch.force, atol=SAME * np.abs(touch.force).max())
+    np.testing.assert_allclose(force, touch.force, atol=same * np.abs(touch.force).max())
     made.close()

@@ -29,10 +29,6 @@ SLAB = (
     "by the law of foam, an indentation load deflection (ASTM D3574: disc of 323 cm2, 25 % of a "
     "slab of 380 x 380 x 100 mm)"
 )
-MEAN = (
-    "what a linear slab gives under such a disc: the mean of what is firm at first and yields, for "
-    "what gives way with time is felt as a linear body; indentation load deflection"
-)
 
 
 @dataclass(frozen=True)
@@ -217,11 +213,12 @@ MATERIALS = {
     ),
     "MEMORY_FOAM": Material(
         "Memory foam",
-        4_500.0,
+        16_000.0,
         0.20,
         55.0,
-        f"{MEAN} of 12 lbf (53 N)",
+        f"{SLAB} of 12 lbf (53 N)",
         relaxation="MEMORY_FOAM",
+        law="foam",
     ),
     "CHEWING_GUM": Material(
         "Chewing gum",

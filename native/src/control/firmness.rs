@@ -8,7 +8,9 @@
 //! ```
 //!
 //! What is held is then the integral of G over W, a function of the fingers' poses alone, so that nothing is
-//! gained at one place; small presses are linear. Whoever relaxes the body under the forces of a touch finds
+//! gained at one place; small presses are linear. A body that gives way with time is as firm as where it is
+//! now tells, whatever it remembers, and relaxes as a linear one (quasi-linear viscoelasticity: Y. C. Fung,
+//! Biomechanics, 1993). Whoever relaxes the body under the forces of a touch finds
 //! root and whole, in the background. They are faded in, and what that puts into the body the
 //! [toll](super::toll) takes.
 
@@ -43,14 +45,38 @@ impl Firmness {
         (1.0 + self.root * known.sqrt() + self.whole * known).clamp(LEAST, MOST)
     }
 
-    /// The mean of G from nothing to there: with it the linear energy is what is held.
-    pub fn mean(&self, energy: f64) -> f64 {
-        let known = energy.clamp(0.0, self.reach);
-        let to_reach = 1.0 + 2.0 / 3.0 * self.root * known.sqrt() + 0.5 * self.whole * known;
-        if energy > known {
-            (to_reach * known + self.at(energy) * (energy - known)) / energy
+    /// The mean of G on the way out of a spring that holds so much, J/Pa: with it that is what is held. The
+    /// body is moved by so many times as far besides as the spring is, which stays.
+    pub fn mean(&self, energy: f64, remembered: f64) -> f64 {
+        // 2 times the integral of G((s + r)^2 W) s ds from 0 to 1.
+        let (root, whole) = (
+            self.root * energy.max(0.0).sqrt(),
+            self.whole * energy.max(0.0),
+        );
+        let (s, r) = (self.share_known(energy, remembered), remembered);
+        let known = s * s * (1.0 + root * (2.0 / 3.0 * s + r))
+            + s * s * whole * (0.5 * s * s + 4.0 / 3.0 * r * s + r * r);
+        known + self.at(self.reach) * (1.0 - s * s)
+    }
+
+    /// How much of what such a spring presses with is kept as what is remembered grows and it goes back: as a share
+    /// of the force there.
+    pub fn kept(&self, energy: f64, remembered: f64) -> f64 {
+        let (root, whole) = (
+            self.root * energy.max(0.0).sqrt(),
+            self.whole * energy.max(0.0),
+        );
+        let (s, r) = (self.share_known(energy, remembered), remembered);
+        let grown = s * s * (0.5 * root + whole * (2.0 / 3.0 * s + r));
+        grown / self.at(energy * (1.0 + r) * (1.0 + r))
+    }
+
+    /// Of that spring's way the share within reach.
+    fn share_known(&self, energy: f64, remembered: f64) -> f64 {
+        if energy > 0.0 {
+            ((self.reach / energy).sqrt() - remembered).clamp(0.0, 1.0)
         } else {
-            to_reach
+            1.0
         }
     }
 
@@ -110,7 +136,29 @@ mod tests {
             let each = most / f64::from(steps);
             let middle = |k: u32| FIRM.at((f64::from(k) + 0.5) * each);
             let sum: f64 = (0..steps).map(middle).sum();
-            assert!((sum * each / most - FIRM.mean(most)).abs() < 1e-6);
+            assert!((sum * each / most - FIRM.mean(most, 0.0)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn what_a_spring_holds_that_has_gone_back_is_its_work_on_the_way_out() {
+        for (energy, remembered) in [(0.3, 0.5), (1.0, 2.0), (3.0, 0.1), (9.0, 0.4), (0.01, 30.0)] {
+            let held = |r: f64, of: f64| {
+                let steps = 20_000;
+                let sum: f64 = (0..steps)
+                    .map(|k| (f64::from(k) + 0.5) / f64::from(steps) * of)
+                    .map(|s| FIRM.at(energy * (s + r) * (s + r)) * s)
+                    .sum();
+                2.0 * energy * sum * of / f64::from(steps)
+            };
+            let mean = FIRM.mean(energy, remembered);
+            assert!((held(remembered, 1.0) / energy - mean).abs() < 1e-6 * mean);
+            // Where the place stays, the spring goes back by what is remembered more.
+            let more = 1e-4;
+            let gone = held(remembered, 1.0) - held(remembered + more, 1.0 - more);
+            let force = FIRM.at(energy * (1.0 + remembered).powi(2)) * 2.0 * energy;
+            let lost = force * more * (1.0 - FIRM.kept(energy, remembered));
+            assert!((gone - lost).abs() < 1e-3 * force * more, "{gone} {lost}");
         }
     }
 
@@ -137,7 +185,7 @@ mod tests {
         assert_eq!((wild.at(0.001), wild.at(1e6)), (LEAST, MOST));
         assert!(Firmness::default().is_linear());
         assert_eq!(Firmness::default().at(1.0), 1.0);
-        assert_eq!(Firmness::default().mean(1.0), 1.0);
+        assert_eq!(Firmness::default().mean(1.0, 0.0), 1.0);
     }
 
     #[test]

@@ -19,6 +19,8 @@ pub struct Pressed {
     pub carried: DVec3,
     /// It did not move there but was set down.
     pub is_set_down: bool,
+    /// What its push does on the displacements that the body remembers, J.
+    pub remembered: f64,
     /// Its contact point at rest, m; a tool has none.
     pub place: Option<DVec3>,
     /// How far a tool was turned in this tick, about an axis by its length in rad.

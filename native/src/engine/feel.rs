@@ -32,6 +32,7 @@ impl Joint {
             felt.torque -= arm.cross(slot.force * young_modulus);
             let moved = self.moved_in_frame(slot);
             felt.energy += held(slot, moved) * young_modulus;
+            felt.remembered += slot.force.dot(slot.remembered) * young_modulus;
             given -= slot.force.dot(slot.carried) * young_modulus;
             felt.pressed += 1;
             collider.take(Slot { moved, ..*slot });

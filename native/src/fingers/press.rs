@@ -86,6 +86,8 @@ pub struct Answer {
     pub contact_force: DVec3,
     /// Its share of the energy of all, J at unit modulus.
     pub energy: f64,
+    /// What its force does on the displacements that the body remembers, J at unit modulus.
+    pub remembered: f64,
     /// What its own force alone puts into the body, J at unit modulus.
     pub own_energy: f64,
     /// How far the others move the contact point, and past forces, m.

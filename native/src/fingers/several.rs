@@ -107,6 +107,7 @@ impl Several {
                 let own = inverse_of_definite(&alone[p][p])?;
                 answers[p].force = force;
                 answers[p].carried = press.carried;
+                answers[p].remembered = force.dot(press.remembered);
                 let ground = &grounds[usize::from(press.body)];
                 answers[p].along =
                     ground.carried(place(ground, &press), place(ground, &press)) * force;

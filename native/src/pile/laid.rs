@@ -45,10 +45,12 @@ impl Lying {
         match self {
             Self::Alone(prop) => Beside {
                 held: prop.held(),
+                remembered: prop.remembered(),
                 own: None,
             },
             Self::Among(among) => Beside {
                 held: among.held(),
+                remembered: 0.0,
                 own: Some(among.elastic()),
             },
         }
@@ -68,6 +70,8 @@ impl Lying {
 pub struct Beside {
     /// What all else than fingers holds.
     pub held: f64,
+    /// What that does on the displacements which the body remembers.
+    pub remembered: f64,
     /// All that is held in the body itself, where fingers hold some in others, too.
     pub own: Option<f64>,
 }

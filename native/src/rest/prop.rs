@@ -10,7 +10,7 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::mobility::{Mobility, Motion};
 use crate::engine::joint::{AllLed, Led};
-use crate::tool::collider::Collider;
+use crate::tool::collider::{Collider, Felt};
 use crate::tool::shape::Pose;
 
 /// A fixed tool that bears a body.
@@ -45,9 +45,17 @@ impl Prop {
 
     /// What its supports hold in it, J.
     pub fn held(&self) -> f64 {
+        self.felt().map(|felt| felt.energy).sum()
+    }
+
+    /// What their pushes do on the displacements that it remembers, J.
+    pub fn remembered(&self) -> f64 {
+        self.felt().map(|felt| felt.remembered).sum()
+    }
+
+    fn felt(&self) -> impl Iterator<Item = &Felt> {
         let supports = self.supports.iter();
-        let held = supports.filter_map(|support| support.collider.felt().ok());
-        held.map(|felt| felt.energy).sum()
+        supports.filter_map(|support| support.collider.felt().ok())
     }
 
     /// What its weight can give back, J, from the height of the world's origin on.

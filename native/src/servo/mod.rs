@@ -101,7 +101,7 @@ impl Servo {
         };
         let relaxed = settings.young_modulus;
         settings.young_modulus *= creep.firmness();
-        let firm = self.firm(&settings, creep.is_none(), dt);
+        let firm = self.firm(&settings, dt);
         settings.young_modulus *= firm.map_or(1.0, |firm| firm.share);
         self.tick += 1;
         let moment = Moment {

@@ -14,6 +14,8 @@ START = np.array([0.03, 0.027, 0.0605])
 DEPTH = 0.004
 # At the depth: 1 + s/4 + s^2/4 of its share, and 1 - s/3.
 FIRMER, SOFTER = (0.25, 0.25), (-1 / 3, 0.0)
+# How it gives way with time.
+RELAXING = ((0.8, 0.02), (0.5, 0.1))
 
 
 def down(depth, ticks):
@@ -57,9 +59,9 @@ def test_finger_and_floors_press_so_many_times_as_firmly_and_the_weight_stays(la
 
 @pytest.mark.parametrize("firmness", [FIRMER, SOFTER])
 @pytest.mark.parametrize("ticks", [400, 4000])
-@pytest.mark.parametrize("max_force", [None, 50.0])
-def test_in_and_out_gives_nothing(laid, firmness, ticks, max_force):
-    servo = laid.servo(START, tip=TIP, max_force=max_force)
+@pytest.mark.parametrize(("max_force", "relaxation"), [(None, ()), (50.0, ()), (None, RELAXING)])
+def test_in_and_out_gives_nothing(laid, firmness, ticks, max_force, relaxation):
+    servo = laid.servo(START, tip=TIP, max_force=max_force, relaxation=relaxation)
     firm(servo, firmness, held_at(laid, DEPTH))
     servo.follow(down(0.0, 600))
     # In, to and fro there until another firmness has come, and out again.
@@ -72,7 +74,8 @@ def test_in_and_out_gives_nothing(laid, firmness, ticks, max_force):
     assert given < 1e-3 * np.abs(forces).max() * DEPTH / 2
 
 
-def test_at_rest_it_presses_as_without_a_clock(laid, eventually):
+@pytest.mark.parametrize("relaxation", [(), RELAXING])
+def test_at_rest_it_presses_as_without_a_clock(laid, eventually, relaxation):
     body = laid.body
     made = shape(body, "real")
     made.wait_for(np.zeros(0, dtype=np.int64))
@@ -81,7 +84,7 @@ def test_at_rest_it_presses_as_without_a_clock(laid, eventually):
     resting.lead([Pose.at(START - [0.0, 0.0, DEPTH])])
     linear = resting.settle().tools[0].force
     (rest,) = settle_firmly(resting, [made])
-    servo = laid.servo(START, tip=TIP)
+    servo = laid.servo(START, tip=TIP, relaxation=relaxation)
     servo.follow(down(0.0, 300))
     servo.follow(down(DEPTH, 2000))
     firming = Firming(servo, body, TIP, supports=laid.corner())

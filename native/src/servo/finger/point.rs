@@ -231,6 +231,7 @@ impl Point {
             is_settled(followed),
         );
         touch.pressed.carried = frame.direction(answer.carried);
+        touch.pressed.remembered = answer.remembered * young_modulus;
         touch
     }
 

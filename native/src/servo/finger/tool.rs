@@ -82,6 +82,7 @@ impl ToolTouch {
         );
         (touch.pressed.turn, touch.pressed.torque) = (turn, felt.torque * -share);
         touch.pressed.carried = felt.carried;
+        touch.pressed.remembered = felt.remembered * share;
         touch
     }
 }

@@ -15,6 +15,8 @@ pub struct Felt {
     pub stiffness: DMat3,
     /// Of what it presses, J: its share of the body's, and what springs before its points hold.
     pub energy: f64,
+    /// What its force does on the displacements that the body remembers, J.
+    pub remembered: f64,
     /// How far the body itself has moved what it presses in this tick, along its force, m.
     pub carried: DVec3,
     /// What its own pushes put into that, were nobody else there, J.
@@ -37,6 +39,7 @@ impl Default for Felt {
             torque: DVec3::ZERO,
             stiffness: DMat3::ZERO,
             energy: 0.0,
+            remembered: 0.0,
             carried: DVec3::ZERO,
             own_energy: 0.0,
             pressed: 0,
