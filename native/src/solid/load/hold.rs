@@ -11,8 +11,9 @@ pub struct Hold {
     pub normal: DVec3,
     /// Coulomb's coefficient.
     pub friction: f64,
-    /// What presses there and holds it aside before anything is counted in, N at 1 Pa.
+    /// What presses there before anything is counted in, N at 1 Pa.
     pub push: f64,
+    /// And what holds it aside.
     pub pull: DVec3,
 }
 
@@ -27,10 +28,12 @@ impl Hold {
     }
 }
 
-/// What is counted in of a hold: the force aside, and by how much it holds at most.
+/// What is counted in of a hold.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Held {
+    /// The force aside, N.
     pub pull: DVec3,
+    /// By how much it holds at most, N.
     pub most: f64,
 }
 
