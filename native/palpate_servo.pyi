@@ -1169,9 +1169,10 @@ class Relaxation:
         most_steps: int,
         dead: ArrayLike | None = None,
         loose: tuple[Sequence[ArrayLike], Sequence[ArrayLike], Sequence[float]] | None = None,
+        holds: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike] | None = None,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float, int]:
         """The body at rest beside rigid ``tools``, with the position and the rotation of each, that
-        press p ``places`` of its surface without friction and never hold one.
+        press p ``places`` of its surface and never pull one.
 
         Places: three free nodes of each (3p,), the same among the m nodes whose ``compliance``
         (m * m, 3, 3) is given, area coordinates (p, 3), none of what is pinned, where they are at
@@ -1179,7 +1180,10 @@ class Relaxation:
         displacements. Linear and warped displacements, forces (p, 3) on the places, by what share
         of ``work`` it is not at rest or places are still within (``close`` is enough), and steps.
         Forces ``dead`` press it besides; ``loose``: rigid motions as of the body, along some of
-        which it goes as it is pressed. ``compliance`` has these in it.
+        which it goes as it is pressed. ``compliance`` has these in it. ``holds``: of each place the
+        displacement it is held at (p, 3), the tool's normal (p, 3), across which it is, Coulomb's
+        coefficient (p,), 0 of smooth tools, and what is believed to push (p,) and to hold it aside
+        (p, 3) before that is found.
         """
 
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:

@@ -35,7 +35,7 @@ class BodyTouch:
     nodes : int64 (k,), nodes of the mesh that carry force.
     nodal_forces : float64 (k, 3), on these, newton, in the body's own frame.
     by : what touches it and where that is in the body's own frame, where it is a tool.
-    slides : whether that is without friction.
+    friction : Coulomb's coefficient of that.
     """
 
     force: Array
@@ -47,7 +47,7 @@ class BodyTouch:
     nodes: NDArray[np.int64]
     nodal_forces: Array
     by: tuple[Tool, Pose] | None = None
-    slides: bool = False
+    friction: float = 0.0
 
     @property
     def pressures(self) -> Array:

@@ -252,9 +252,9 @@ class Resting:
     def rest(self) -> Rest:
         """Where the body is now."""
         placement = Pose(self._native.position, self._native.rotation)
-        slides = [self._friction == 0.0] * len(self._tools)
-        slides += [support.friction == 0.0 for support in self._supports]
-        told = zip(self._native.touches(), self._pressing(placement), slides, strict=True)
+        friction = [self._friction] * len(self._tools)
+        friction += [support.friction for support in self._supports]
+        told = zip(self._native.touches(), self._pressing(placement), friction, strict=True)
         touches = [_touch(self.body, placement, *one) for one in told]
         return Rest(
             self.body,
@@ -277,7 +277,7 @@ def _touch(
     placement: Pose,
     told: RestTouch,
     by: tuple[Tool, Pose] | None,
-    slides: bool,
+    friction: float,
 ) -> BodyTouch:
     turn = placement.rotation.T
     return BodyTouch(
@@ -290,5 +290,5 @@ def _touch(
         nodes=body.mesh.surface_nodes[told["nodes"]],
         nodal_forces=told["nodal_forces"],
         by=by,
-        slides=slides,
+        friction=friction,
     )

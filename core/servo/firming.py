@@ -48,7 +48,7 @@ class _Look:
 @dataclass(eq=False)
 class Firming:
     """Follows a servo's touch. ``tool`` is what all its fingers press with, of a pinned body one
-    that slides; of one that nobody holds ``slides`` tells, and ``supports`` bear it. Snapshots are
+    that slides; of one that nobody holds with ``friction``, and ``supports`` bear it. Snapshots are
     as the body sees them (``Snapshot.seen_from_body``).
 
     Between calls of :meth:`follow` a thread may be at work.
@@ -60,7 +60,7 @@ class Firming:
     servo: Firmed
     body: SoftBody
     tool: Tool | None = None
-    slides: bool = True
+    friction: float = 0.0
     supports: Sequence[Floor | Support] = ()
     _finding: Future[Firmness] | None = None
     _worker: ThreadPoolExecutor = field(
@@ -143,7 +143,7 @@ class Firming:
             FingerLoad(
                 nodes[own],
                 forces[own],
-                by=Setting(*one, self.body, support.friction == 0.0),
+                by=Setting(*one, self.body, support.friction),
                 firmness=snapshot.firmness,
             )
             for number, (one, support) in enumerate(zip(by, self.supports, strict=True))
@@ -153,7 +153,8 @@ class Firming:
     def _setting(self, finger: FingerSnapshot) -> Setting | None:
         if self.tool is None or not len(finger.points):
             return None
-        return Setting(self.tool, Pose(finger.proxy, finger.orientation), self.body, self.slides)
+        pose = Pose(finger.proxy, finger.orientation)
+        return Setting(self.tool, pose, self.body, self.friction)
 
     def close(self) -> None:
         """End; does not wait."""

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
-from ..rest.rest import Rest
-from .rotation_strain.finger_load import FingerLoad, Setting, alike
+from ..rest.rest import BodyTouch, Rest
+from .rotation_strain.finger_load import FingerLoad, Footing, Setting, alike
 from .shapes import LinearShape, Shape, pressed_by
 
 # Firmness stays where it changes by less than this share; looks until it does, at most.
@@ -274,9 +274,17 @@ def _loads(rest: Rest, times: float) -> list[FingerLoad]:
         FingerLoad(
             touch.nodes,
             touch.nodal_forces / times,
-            by=None if touch.by is None else Setting(*touch.by, rest.body, touch.slides),
+            by=_setting(rest, touch),
             firmness=times,
         )
         for touch in rest.touches
         if len(touch.nodes)
     ]
+
+
+def _setting(rest: Rest, touch: BodyTouch) -> Setting | None:
+    if touch.by is None:
+        return None
+    moved = rest.placement.to_tool(touch.places) - touch.at_rest
+    footing = Footing(touch.at_rest, moved, touch.pushes)
+    return Setting(*touch.by, rest.body, touch.friction, footing)

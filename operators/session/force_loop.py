@@ -210,8 +210,8 @@ class ForceLoop:
 
     def _tell_tool(self) -> None:
         # Where friction holds it on a pinned body, that is led by its linear forces.
-        self.firming.slides = not self.settings.servo.static_friction
-        is_told = self.firming.slides or self.prop is not None
+        self.firming.friction = self.settings.servo.static_friction
+        is_told = self.firming.friction == 0.0 or self.prop is not None
         self.firming.tool = self.tip.tool if is_told else None
 
     def _set(self) -> None:

@@ -85,8 +85,8 @@ def between_tools(
 ) -> Beside | None:
     """A body that nothing holds where the tools of ``loads`` are, what bears it among them.
 
-    Their friction and its weight are as under the linear contact, as many times as the body was
-    firm there. None as of :func:`beside_tools`.
+    Its weight is as under the linear contact, as many times as the body was firm there. None as of
+    :func:`beside_tools`.
     """
     if solid.motions is None or any(load.by is None for load in loads):
         return None
@@ -97,17 +97,15 @@ def between_tools(
     if kept is None or kept.left > ENOUGH:
         return None
     energy = 0.5 * float((forces * moved).sum())
-    return _beside(loads, kept, energy, firmness * loose.friction)
+    return _beside(loads, kept, energy)
 
 
-def _beside(
-    loads: Sequence[FingerLoad], kept: Kept, energy: float, friction: Array | float = 0.0
-) -> Beside | None:
+def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float) -> Beside | None:
     trust = min((kept.pressing - FEW_PLACES) / (MANY_PLACES - FEW_PLACES), 1.0)
     if trust <= 0.0:
         return None
     along = _totals(loads)
-    share = float(((kept.forces + friction) * along).sum()) / float((along * along).sum())
+    share = float((kept.forces * along).sum()) / float((along * along).sum())
     return Beside(share, trust, energy, kept)
 
 

@@ -17,15 +17,27 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
+class Footing:
+    """Places (p,) that a tool presses: ``at_rest`` (p, 3), the way ``moved`` (p, 3) from there to
+    where the contact has them, metres, in the body's frame, and their ``pushes`` (p,), N.
+    """
+
+    at_rest: Array
+    moved: Array
+    pushes: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Setting:
-    """A tool where it is, and the body as it touches it, with its imprint; whether it ``slides``
-    without friction.
+    """A tool where it is, and the body as it touches it, with its imprint; Coulomb's ``friction``
+    of it, none where the body slides, and its ``footing`` where that is known.
     """
 
     tool: Tool
     pose: Pose
     body: SoftBody
-    slides: bool = True
+    friction: float = 0.0
+    footing: Footing | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,9 @@
-"""Tools that a body is kept out of while it comes to rest: contact without friction.
+"""Tools that a body is kept out of while it comes to rest.
 
 The linear contact tells forces, under which a body of another law goes elsewhere: beside a tool it
 would be drawn within it or apart. Here it presses where it touches and lets go where it does not
-(`native/src/solid/load/against.rs`), in three places of each triangle that the tools may meet.
+(`native/src/solid/load/against.rs`), in three places of each triangle that the tools may meet. A
+body that nothing holds rough tools hold aside, too (:mod:`.held_aside`).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ...contact.near_field.surface_shape import face_areas, face_normals
 from ...contact.tool.native_tool import native_shape
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad, Setting, on_free_nodes
+from .held_aside import held_aside
 from .lying import Loose
 from .relaxation import Relaxation, fields_of
 
@@ -116,6 +118,7 @@ def kept_out(
     free = np.searchsorted(solid.free, corners)
     free[free == solid.node_count] = 0
     moves = solid.free[free] == corners
+    free, shares = np.where(moves, free, 0), np.where(moves, alphas, 0.0)
     seen, known = np.unique(corners, return_inverse=True)
     local = np.searchsorted(mesh.surface_nodes, seen)
     compliance = body.surface_blocks(local, local)
@@ -125,9 +128,9 @@ def kept_out(
         start,
         [(native_shape(by.tool), by.pose.position, by.pose.rotation) for _, by in whole],
         (
-            np.where(moves, free, 0).ravel(),
+            free.ravel(),
             known.ravel(),
-            np.where(moves, alphas, 0.0),
+            shares,
             rests,
             FIRMNESS / usual_edge(body) * areas,
             which,
@@ -138,6 +141,7 @@ def kept_out(
         MOST_STEPS,
         None if loose is None else firmness * loose.dead,
         None if loose is None else (*fields_of(loose.motions), loose.gives.tolist()),
+        None if loose is None else _held_by(whole, places, free, shares, start),
     )
     forces = np.zeros((len(whole), 3))
     np.add.at(forces, which, pushes)
@@ -145,6 +149,26 @@ def kept_out(
     sums, squares = np.bincount(which, sizes), np.bincount(which, sizes * sizes)
     pressing = float((sums * sums / np.maximum(squares, np.finfo(float).tiny)).min())
     return Kept(linear, moved, forces, pressing, left, steps)
+
+
+def _held_by(
+    whole: Sequence[tuple[FingerLoad, Setting]],
+    places: Sequence[ContactPoints],
+    free: NDArray[np.int64],
+    shares: Array,
+    moved: Array,
+) -> tuple[Array, Array, Array, Array, Array]:
+    ends = np.cumsum([len(one.triangles) for one in places])[:-1]
+    parts = zip(whole, places, np.split(free, ends), np.split(shares, ends), strict=True)
+    every = [
+        held_aside(load, by, own, corners, alphas, moved, usual_edge(by.body))
+        for (load, by), own, corners, alphas in parts
+    ]
+    goals, normals, friction, pushes, pulls = (
+        np.concatenate([getattr(one, name) for one in every])
+        for name in ("goals", "normals", "friction", "pushes", "pulls")
+    )
+    return goals, normals, friction, pushes, pulls
 
 
 def _near(load: FingerLoad, by: Setting) -> NDArray[np.int64]:

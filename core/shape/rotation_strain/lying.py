@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...compliance.free_body.inertia import RigidMotions
 from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad, on_free_nodes
+from .held_aside import sliding
 
 Array = NDArray[np.float64]
 
@@ -50,46 +51,39 @@ def met(modes: Array, moved: Array, linear: Array, forces: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Loose:
-    """How a body goes as a whole between tools without friction.
+    """How a body goes as a whole between tools.
 
     Attributes
     ----------
     motions : rigid ones, those first which contacts hardly resist.
     gives : (6,), how readily each is followed, m/N at 1 Pa times m^3; none of what nothing resists.
-    dead : (f, 3), the linear forces that no contact without friction answers: friction, and loads
-        of inertia, which are the weight where the body rests.
-    friction : (k, 3), the part of each load that friction carries.
+    dead : (f, 3), the linear forces that no contact answers: loads of inertia, which are the weight
+        where the body rests.
     """
 
     motions: RigidMotions
     gives: Array
     dead: Array
-    friction: Array
 
     @classmethod
     def of(cls, solid: FreeSolid, motions: RigidMotions, loads: Sequence[FingerLoad]) -> Loose:
         """Between the tools of ``loads``, of which each has one."""
         forces = on_free_nodes(solid, loads)
         balanced, linear = motions.balanced(forces), solid.linear(forces)
-        pushes = np.zeros_like(forces)
-        friction, square = np.zeros((len(loads), 3)), np.zeros((6, 6))
-        for number, load in enumerate(loads):
+        square = np.zeros((6, 6))
+        for load in loads:
             if load.by is None:
                 continue
             own = on_free_nodes(solid, [load])
             pressed = np.flatnonzero(own.any(axis=1))
             there = solid.positions[pressed] + linear[pressed]
             _, normals = load.by.tool.distance(load.by.pose.to_tool(there))
-            out = normals @ load.by.pose.rotation.T
-            push = np.maximum(np.einsum("ki,ki->k", out, own[pressed]), 0.0)
-            if load.by.slides:
-                # Spread over nodes beside them, pushes are not quite along the normals there.
-                pushes[pressed] += own[pressed]
-            else:
-                pushes[pressed] += push[:, None] * out
-                friction[number] = own.sum(axis=0) - push @ out
-            rows = np.einsum("ki,kiq->kq", out, motions.of_nodes[pressed])
-            square += (push[:, None] * rows).T @ rows
+            square += _resisted(
+                own[pressed],
+                normals @ load.by.pose.rotation.T,
+                motions.of_nodes[pressed],
+                load.by.friction,
+            )
         resisted, basis = np.linalg.eigh(square)
         turned = RigidMotions(motions.modes @ basis, motions.loads @ basis)
         size = float(np.linalg.norm(forces, axis=1).sum()) / 2.0
@@ -97,10 +91,24 @@ class Loose:
         volume = 1.0 / float(np.square(motions.modes.reshape(-1, 3, 6)[0, :, :3]).sum() / 3.0)
         is_loose = resisted > RESISTED * resisted[-1]
         gives = np.where(is_loose, READILY * yields * volume, 0.0)
-        return cls(turned, gives, balanced - pushes, friction)
+        return cls(turned, gives, balanced - forces)
 
     def compliance(self, free: NDArray[np.int64]) -> Array:
         """How far nodes (k,) of the free ones go with it under forces on these, (k, k, 3, 3)."""
         modes = self.motions.of_nodes[free]
         found: Array = np.einsum("aiq,q,bjq->abij", modes, self.gives, modes)
         return found
+
+
+def _resisted(forces: Array, out: Array, modes: Array, friction: float) -> Array:
+    """How a tool's forces (k, 3) on nodes with its normals ``out`` (k, 3) resist motions (k, 3, 6)
+    of these, (6, 6): along the normals, and aside as far as places stick.
+    """
+    push = np.maximum(np.einsum("ki,ki->k", out, forces), 0.0)
+    rows = np.einsum("ki,kiq->kq", out, modes)
+    found: Array = (push[:, None] * rows).T @ rows
+    if friction > 0.0:
+        holds = push * (1.0 - sliding(forces, out, friction))
+        aside = modes - out[:, :, None] * rows[:, None, :]
+        found = found + np.einsum("k,kip,kiq->pq", holds, aside, aside)
+    return found

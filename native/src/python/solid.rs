@@ -8,8 +8,8 @@ use numpy::{AllowTypeChange, PyArrayLike3};
 use pyo3::prelude::*;
 
 use self::given::{
-    GivenFactor, GivenLaw, GivenMotions, GivenPlaces, GivenSprings, GivenTerm, GivenTool, Numbers,
-    Rows, factor, table, unfit,
+    GivenFactor, GivenHolds, GivenLaw, GivenMotions, GivenPlaces, GivenSprings, GivenTerm,
+    GivenTool, Numbers, Rows, factor, table, unfit,
 };
 use crate::python::vectors::{self, Matrix};
 use crate::servo::paced::locked;
@@ -184,7 +184,7 @@ impl Relaxation {
         ))
     }
 
-    #[pyo3(signature = (linear, tools, places, compliance, work, close, most_steps, dead=None, loose=None))]
+    #[pyo3(signature = (linear, tools, places, compliance, work, close, most_steps, dead=None, loose=None, holds=None))]
     #[expect(clippy::too_many_arguments, reason = "Python's names tell them apart")]
     fn kept_out<'py>(
         &self,
@@ -198,6 +198,7 @@ impl Relaxation {
         most_steps: usize,
         dead: Option<Rows<'_>>,
         loose: Option<GivenMotions<'_>>,
+        holds: Option<GivenHolds<'_>>,
     ) -> PyResult<(Matrix<'py>, Matrix<'py>, Matrix<'py>, f64, usize)> {
         let nodes = self.nodes(py);
         let linear = given::rows("linear", &linear, nodes)?;
@@ -208,14 +209,12 @@ impl Relaxation {
             .collect::<PyResult<Vec<_>>>()?;
         let compliance = vectors::matrices("compliance", &compliance)?;
         let known = compliance.len().isqrt();
-        let mut against = Against::new(
-            given::places(&places, nodes, known)?,
-            tools,
-            compliance,
-            known,
-            nodes,
-        )
-        .ok_or_else(unfit)?;
+        let mut places = given::places(&places, nodes, known)?;
+        if let Some(holds) = &holds {
+            given::hold(holds, &mut places)?;
+        }
+        let mut against =
+            Against::new(places, tools, compliance, known, nodes).ok_or_else(unfit)?;
         let dead = dead.map_or_else(
             || Ok(vec![[0.0; 3]; nodes]),
             |forces| given::rows("dead", &forces, nodes),

@@ -1,7 +1,11 @@
 //! What presses a body: forces, what it is led to, and tools that it is kept out of.
 
 pub mod against;
+mod doing;
+pub mod hold;
+mod lower_upper;
 pub mod place;
+mod yielding;
 
 use against::Against;
 

@@ -10,6 +10,7 @@ use crate::python::tool::shape::Tool;
 use crate::python::vectors::{Matrix, misshaped};
 use crate::solid::domains::Domains;
 use crate::solid::factor::Factor;
+use crate::solid::load::hold::Hold;
 use crate::solid::load::place::Place;
 use crate::solid::relaxation::gauge::Gauge;
 use crate::solid::strained::{Springs, Term};
@@ -43,6 +44,8 @@ pub(super) type GivenPlaces<'py> = (
     Numbers<'py>,
     Counts<'py>,
 );
+/// Of each place the displacement it is held at, the tool's normal, friction, and what presses there.
+pub(super) type GivenHolds<'py> = (Rows<'py>, Rows<'py>, Numbers<'py>, Numbers<'py>, Rows<'py>);
 /// Shares and exponents of stretches and of volumes, and whether what is pulled goes on as a parabola.
 pub(super) type GivenLaw = (Vec<(f64, f64)>, Vec<(f64, f64)>, bool);
 /// Where the entries of each row begin, columns, values.
@@ -126,8 +129,33 @@ pub(super) fn places(
             rest: rests[one].into(),
             firmness: firmness[one],
             tool: tools[one],
+            hold: None,
         })
         .collect())
+}
+
+/// Has rough tools hold places.
+pub(super) fn hold(
+    (goals, normals, friction, pushes, pulls): &GivenHolds<'_>,
+    places: &mut [Place],
+) -> PyResult<()> {
+    let goals = rows("goals", goals, places.len())?;
+    let normals = rows("normals", normals, places.len())?;
+    let pulls = rows("pulls", pulls, places.len())?;
+    let (friction, pushes) = (friction.as_array().to_vec(), pushes.as_array().to_vec());
+    if [friction.len(), pushes.len()] != [places.len(); 2] {
+        return Err(unfit());
+    }
+    for (one, place) in places.iter_mut().enumerate() {
+        place.hold = (friction[one] > 0.0).then(|| Hold {
+            goal: goals[one].into(),
+            normal: normals[one].into(),
+            friction: friction[one],
+            push: pushes[one],
+            pull: pulls[one].into(),
+        });
+    }
+    Ok(())
 }
 
 pub(super) fn springs(

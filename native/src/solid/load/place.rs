@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::hold::Hold;
 use crate::solid::domains::Nodal;
 
 /// A place of the surface that a tool is kept out of.
@@ -19,6 +20,8 @@ pub struct Place {
     pub firmness: f64,
     /// Which tool.
     pub tool: usize,
+    /// What holds it against going aside; none where the tool is smooth.
+    pub hold: Option<Hold>,
 }
 
 impl Place {
@@ -27,6 +30,14 @@ impl Place {
         (self.corners.iter().zip(&self.alpha))
             .map(|(&node, &share)| share * DVec3::from_array(values[node as usize]))
             .sum()
+    }
+
+    /// Its nodes that move: among the free ones, among those known, and their shares.
+    pub(super) fn moving(&self) -> impl Iterator<Item = (u32, usize, f64)> {
+        let nodes = self.corners.iter().zip(&self.known).zip(&self.alpha);
+        nodes
+            .map(|((&node, &known), &share)| (node, known as usize, share))
+            .filter(|&(_, _, share)| share != 0.0)
     }
 
     /// Adds a force to those of its nodes.

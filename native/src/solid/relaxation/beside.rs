@@ -40,7 +40,7 @@ impl Relaxation {
                 break;
             }
             rest.steps += 1;
-            if unrest <= close {
+            if unrest <= against.enough(missed).max(close) {
                 against.count_in(&self.warped);
                 self.arrive(&Load::keeping_out(dead, against));
                 self.find_slope(&Load::keeping_out(dead, against));
