@@ -38,8 +38,8 @@ impl LowerUpper {
             }
             self.exchange(column, &mut own);
             let pivot = own[column];
-            for row in column + 1..size {
-                self.lower[row * size + column] = own[row] / pivot;
+            for (below, part) in own[column + 1..].iter().enumerate() {
+                self.lower[(column + 1 + below) * size + column] = part / pivot;
             }
             self.upper[from..=from + column].copy_from_slice(&own[..=column]);
         }
