@@ -71,7 +71,8 @@ def held_aside(
     """
     goals = np.einsum("pa,pai->pi", alphas, moved[corners])
     if by.friction == 0.0:
-        return HeldAside(goals, np.zeros_like(goals), *np.zeros((2, len(goals))), 0.0 * goals)
+        none = np.zeros(len(goals))
+        return HeldAside(goals, np.zeros_like(goals), none, none, np.zeros_like(goals))
     if by.footing is not None and by.footing.pushes.any():
         goals = between(by.footing, places.positions, edge)
     _, out = by.tool.distance(by.pose.to_tool(places.positions + goals))
