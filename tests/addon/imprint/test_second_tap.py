@@ -95,7 +95,8 @@ def test_the_body_has_the_imprint_where_it_is_seen(clay):
     on_top = np.abs(nodes[:, 2] - 0.025) < 1e-6
     expected = [between(clay, *node[:2]) for node in nodes[on_top]]
     assert np.linalg.norm(expected, axis=1).max() > 0.5 * deepest(clay, "Press 1")
-    np.testing.assert_allclose(moved_by[surface][on_top], expected, atol=1e-4)
+    # Between vertices a dent of that radius is off a bilinear one by h^2 / 8 R along each axis.
+    np.testing.assert_allclose(moved_by[surface][on_top], expected, atol=2e-4)
 
 
 def between(thing, x, y):
