@@ -23,6 +23,7 @@ from pathlib import Path
 import numpy as np
 from palpate_servo.harness import SteppedFingers
 
+from palpate.benchmarks.measuring.servo.timed_rounds import timed_rounds
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose, facing
 from palpate.core.contact.tool.tools import plate, sphere
@@ -45,8 +46,6 @@ BOARDS = 15
 FRAMED, ALONE, FRAME = 8, 16.0, 1000.0 / 24.0
 # Of a press in the servo, ms: the median and the worst.
 MEDIAN, WORST = 0.3, 0.7
-# So often the same press is timed.
-ROUNDS = 5
 FRICTIONS = (0.0, 0.5)
 
 
@@ -100,13 +99,14 @@ def servo_costs(body: SoftBody, friction: float, goals: list[Pose]) -> np.ndarra
     pile = Pile(laid, [Floor(friction=friction)], fingertips=[TIP], settings=settings)
     feel = Settings(body.young_modulus, static_friction=friction, dynamic_friction=friction)
     start = goals[0].position
-    taken = []
-    for _ in range(ROUNDS):
+
+    def landed() -> SteppedFingers:
         fingers = SteppedFingers(pile.native_body, start[None], feel, prop=pile.laid())
         fingers.set_tool(native_tool(body, pile.native_body, TIP), np.eye(3))
         fingers.follow(np.repeat(start[None, None], LANDING, 0))
-        taken.append(fingers.costs(np.array([goal.position for goal in goals])[:, None]))
-    return 1e3 * np.array(taken)
+        return fingers
+
+    return 1e3 * timed_rounds(landed, np.array([goal.position for goal in goals])[:, None])[0]
 
 
 def drawn(rows: list[tuple[int, float, int, float]], file: Path) -> None:

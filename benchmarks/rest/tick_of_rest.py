@@ -18,6 +18,7 @@ import time
 import numpy as np
 from palpate_servo.harness import SteppedFingers
 
+from palpate.benchmarks.measuring.servo.timed_rounds import timed_rounds
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
@@ -31,8 +32,6 @@ from palpate.tests.bodies.free_shapes import free_block
 DT = 1e-3
 TIP = sphere(0.008)
 MEDIAN, WORST = 300.0, 700.0
-# So often the same touch is timed.
-ROUNDS = 5
 
 
 def path(ticks: int) -> np.ndarray:
@@ -89,13 +88,14 @@ def servo_costs(body: SoftBody, places: np.ndarray, settings: RestSettings) -> n
     native = native_body(body, whole=True, may_move=True)
     feel = Settings(body.young_modulus, static_friction=friction, dynamic_friction=friction)
     prop = native_prop(body, native, [Floor(friction=friction)], settings=settings)
-    taken = []
-    for _ in range(ROUNDS):
+
+    def rested() -> SteppedFingers:
         fingers = SteppedFingers(native, places[:1], feel, prop=prop)
         fingers.set_tool(native_tool(body, native, TIP), np.eye(3))
         fingers.follow(np.repeat(places[:1], 300, 0)[:, None])
-        taken.append(fingers.costs(places[:, None]))
-    return np.array(taken)
+        return fingers
+
+    return timed_rounds(rested, places[:, None])[0]
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from palpate_servo import Body
 from palpate_servo.harness import SteppedFingers
 
+from palpate.benchmarks.measuring.servo.timed_rounds import timed_rounds
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.tools import Tool, plate, sphere
 from palpate.core.servo.session import native_tool
@@ -22,7 +23,7 @@ FRICTION = 0.4
 # Where the tools come from, m, and in how many ticks.
 FROM = 0.02
 WAY_IN = 300
-# The same path so many times: the least time of each tick is nearest to its computing.
+# The same path so many times.
 ROUNDS = 4
 
 
@@ -95,15 +96,17 @@ def costs(
     way_in = path[0] + out
     settings = Settings(body.young_modulus, static_friction=friction, dynamic_friction=friction)
     tool = native_tool(body, surface, together.tool)
-    taken, fingers = [], None
-    for _ in range(ROUNDS):
+
+    def come() -> SteppedFingers:
         fingers = SteppedFingers(surface, way_in[0], settings)
         for finger, rotation in enumerate(together.rotations):
             fingers.set_tool(tool, rotation.tolist(), finger)
         fingers.costs(way_in)
-        taken.append(fingers.costs(path))
-    pressed = [len(shot.points) for shot in fingers.snapshot().fingers] if fingers else []
-    return 1e6 * np.min(taken, axis=0), pressed
+        return fingers
+
+    taken, fingers = timed_rounds(come, path, ROUNDS)
+    pressed = [len(shot.points) for shot in fingers.snapshot().fingers]
+    return 1e6 * taken.min(axis=0), pressed
 
 
 def print_several(body: SoftBody, surface: Body, ticks: int) -> bool:

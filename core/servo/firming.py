@@ -113,7 +113,7 @@ class Firming:
         loads = [
             FingerLoad(
                 surface[finger.nodes],
-                _linear(snapshot, finger.nodes, finger.nodal_forces),
+                self._linear(snapshot, finger.nodes, finger.nodal_forces),
                 sticks=not len(finger.points),
                 by=self._setting(finger),
                 firmness=firm if self.body.is_free else 1.0,
@@ -125,10 +125,18 @@ class Firming:
             loads += self._borne(snapshot)
         return tuple(loads)
 
+    def _linear(self, snapshot: Snapshot, nodes: NDArray[np.int64], forces: Array) -> Array:
+        """Forces (k, 3), N, of a linear body that is as it is now; in the end, if it remembers."""
+        if not len(snapshot.remembered_nodes):
+            return forces / snapshot.firmness
+        remembered = np.zeros((len(self.body.mesh.surface_nodes), 3))
+        remembered[snapshot.remembered_nodes] = snapshot.remembered_forces
+        return remembered[nodes]
+
     def _borne(self, snapshot: Snapshot) -> list[FingerLoad]:
         """Loads of the supports: each of the force on the nodes that are nearest to it."""
         nodes = self.body.mesh.surface_nodes[snapshot.borne_nodes]
-        forces = _linear(snapshot, snapshot.borne_nodes, snapshot.borne_forces)
+        forces = self._linear(snapshot, snapshot.borne_nodes, snapshot.borne_forces)
         if not self.supports:
             return [FingerLoad(nodes, forces)]
         placement = Pose(*snapshot.placement)
@@ -170,18 +178,6 @@ class Firming:
         if firmness != self._told:
             self._told = firmness
             self.servo.set_firmness(firmness.root, firmness.whole, firmness.reach)
-
-
-def _linear(snapshot: Snapshot, nodes: NDArray[np.int64], forces: Array) -> Array:
-    """Forces (k, 3), N, of a linear body that is as it is now; in the end, if it remembers."""
-    if not len(snapshot.remembered_nodes):
-        return forces / snapshot.firmness
-    number = {int(node): k for k, node in enumerate(snapshot.remembered_nodes)}
-    found = np.zeros_like(forces)
-    for row, node in enumerate(nodes):
-        if (k := number.get(int(node))) is not None:
-            found[row] = snapshot.remembered_forces[k]
-    return found
 
 
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:

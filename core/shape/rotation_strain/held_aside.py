@@ -78,8 +78,8 @@ def held_aside(
     _, out = by.tool.distance(by.pose.to_tool(places.positions + goals))
     normals = out @ by.pose.rotation.T
     forces = load.firmness * _spread(load, by.body, places, edge)
-    pushes = np.maximum(np.einsum("pi,pi->p", forces, normals), 0.0)
-    pulls = forces - np.einsum("pi,pi->p", forces, normals)[:, None] * normals
+    along = np.einsum("pi,pi->p", forces, normals)
+    pushes, pulls = np.maximum(along, 0.0), forces - along[:, None] * normals
     sizes = np.maximum(np.linalg.norm(pulls, axis=1), np.finfo(float).tiny)
     came = CAME * edge * sliding(forces, normals, by.friction)
     back = (came / sizes)[:, None] * pulls

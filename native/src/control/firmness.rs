@@ -49,11 +49,7 @@ impl Firmness {
     /// body is moved by so many times as far besides as the spring is, which stays.
     pub fn mean(&self, energy: f64, remembered: f64) -> f64 {
         // 2 times the integral of G((s + r)^2 W) s ds from 0 to 1.
-        let (root, whole) = (
-            self.root * energy.max(0.0).sqrt(),
-            self.whole * energy.max(0.0),
-        );
-        let (s, r) = (self.share_known(energy, remembered), remembered);
+        let ([root, whole, s], r) = (self.on_the_way(energy, remembered), remembered);
         let known = s * s * (1.0 + root * (2.0 / 3.0 * s + r))
             + s * s * whole * (0.5 * s * s + 4.0 / 3.0 * r * s + r * r);
         known + self.at(self.reach) * (1.0 - s * s)
@@ -62,22 +58,20 @@ impl Firmness {
     /// How much of what such a spring presses with is kept as what is remembered grows and it goes back: as a share
     /// of the force there.
     pub fn kept(&self, energy: f64, remembered: f64) -> f64 {
-        let (root, whole) = (
-            self.root * energy.max(0.0).sqrt(),
-            self.whole * energy.max(0.0),
-        );
-        let (s, r) = (self.share_known(energy, remembered), remembered);
+        let ([root, whole, s], r) = (self.on_the_way(energy, remembered), remembered);
         let grown = s * s * (0.5 * root + whole * (2.0 / 3.0 * s + r));
         grown / self.at(energy * (1.0 + r) * (1.0 + r))
     }
 
-    /// Of that spring's way the share within reach.
-    fn share_known(&self, energy: f64, remembered: f64) -> f64 {
-        if energy > 0.0 {
-            ((self.reach / energy).sqrt() - remembered).clamp(0.0, 1.0)
+    /// Root and whole where the spring alone holds so much, and the share of its way within reach.
+    fn on_the_way(&self, energy: f64, remembered: f64) -> [f64; 3] {
+        let held = energy.max(0.0);
+        let within = if held > 0.0 {
+            ((self.reach / held).sqrt() - remembered).clamp(0.0, 1.0)
         } else {
             1.0
-        }
+        };
+        [self.root * held.sqrt(), self.whole * held, within]
     }
 
     /// By how much more steeply than firmly the force grows with the depth, 1 or more.

@@ -1,6 +1,6 @@
 //! How the contact points of a body that are looked at give way to forces on each other.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 use super::contact::MOST_SHARES;
 use crate::algebra::wide::{add, plus_product, widely};
@@ -137,7 +137,7 @@ impl Between {
     pub(super) fn move_by(
         &self,
         shares: &[(usize, f64)],
-        ways: &[DVec3; 3],
+        ways: &DMat3,
         count: usize,
         moved: &mut Moved,
     ) {
@@ -145,8 +145,7 @@ impl Between {
         slots.resize(count, [0.0; 12]);
         let column = |slot: usize| &self.blocks[self.at(0, slot)..][..NINE * count];
         if let [(slot, share)] = *shares {
-            let ways = turned_over(&ways.map(|way| way * share));
-            return turn(column(slot), &ways, slots);
+            return turn(column(slot), &turned_over(&(*ways * share)), slots);
         }
         sums.clear();
         sums.resize(NINE * count, 0.0);
@@ -157,13 +156,11 @@ impl Between {
     }
 }
 
-/// Of three vectors an axis after the other.
-pub(super) fn turned_over(vectors: &[DVec3; 3]) -> Three {
+/// Of three vectors, which are columns, an axis after the other.
+pub(super) fn turned_over(columns: &DMat3) -> Three {
     let mut axes = [0.0; 12];
-    for (number, vector) in vectors.iter().enumerate() {
-        for axis in 0..3 {
-            axes[4 * axis + number] = vector[axis];
-        }
+    for axis in 0..3 {
+        axes[4 * axis..][..3].copy_from_slice(&columns.row(axis).to_array());
     }
     axes
 }
@@ -202,6 +199,8 @@ widely! {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     /// Symmetric as a whole, and known by two names.
@@ -235,9 +234,10 @@ mod tests {
             between.enter(new, |slot| block(slot, new));
         }
         let ways = [DVec3::new(0.3, -1.0, 0.5), DVec3::Y, DVec3::NEG_X];
+        let columns = DMat3::from_cols(ways[0], ways[1], ways[2]);
         let shares = [(2, 0.75), (5, -0.5), (0, 0.75)];
         let mut moved = Moved::default();
-        between.move_by(&shares, &ways, 7, &mut moved);
+        between.move_by(&shares, &columns, 7, &mut moved);
         let moved = moved.slots;
         for (number, &way) in ways.iter().enumerate() {
             for (slot, moved) in moved.iter().enumerate() {

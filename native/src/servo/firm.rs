@@ -56,10 +56,10 @@ impl Servo {
         };
         // What is held is the integral of the firmness, where the contact told its end.
         let share = self.firmness.mean(held, remembered) / firm.share;
-        let kept = self.firmness.kept(held, remembered);
         if let Some(own) = beside.own {
             return beside.held + own * (share - 1.0);
         }
+        let kept = self.firmness.kept(held, remembered);
         for finger in pressed {
             finger.carried *= 1.0 - kept;
             (finger.energy, finger.own_energy) = (finger.energy * share, finger.own_energy * share);

@@ -1,11 +1,10 @@
 """Bodies that give way with time, in the servo's own ticks."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
 from referees.hereditary import creep, held_force, retreating_force
+from ways.round_trips import round_trip, work_against
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import displacements_of, native_tool
@@ -110,11 +109,7 @@ def test_round_trips_cost_energy(whole, fingertip, tip):
     up = RADIUS if tool is not None else 0.0
     rng = np.random.default_rng(3)
     for _ in range(4):
-        knots = MIDDLE + rng.uniform([-6e-3, -6e-3, -4e-3], [6e-3, 6e-3, -1e-3], (5, 3))
-        start = MIDDLE + np.array([0.0, 0.0, 1e-3])
-        corners = np.array([start, *knots, start]) + np.array([0.0, 0.0, up])
-        path = np.concatenate([np.linspace(a, b, 80, endpoint=False) for a, b in pairwise(corners)])
-        path = np.concatenate([path, corners[-1:]])
+        path = round_trip(rng, MIDDLE, up)
         settings = Settings(
             YOUNG_MODULUS, relaxation=SERIES, static_friction=9.0, dynamic_friction=9.0
         )
@@ -122,8 +117,7 @@ def test_round_trips_cost_energy(whole, fingertip, tip):
         if tool is not None:
             fingers.set_tool(tool, np.eye(3))
         forces = fingers.follow(path[:, None])[0][:, 0]
-        ways = np.diff(path, axis=0)
-        work = -np.cumsum(np.einsum("ti,ti->t", 0.5 * (forces[1:] + forces[:-1]), ways))
+        work = work_against(forces, path)
         assert work[-1] > -0.01 * work.max()
 
 

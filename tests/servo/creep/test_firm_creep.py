@@ -1,10 +1,9 @@
 """Bodies by their law that give way with time: as firm as where they are pressed tells."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
+from ways.round_trips import round_trip, work_against
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import drawn_loads, native_tool
@@ -116,13 +115,8 @@ def test_round_trips_cost_energy(whole, tool, firmness):
     up, unit = 0.0 if tool is None else RADIUS, unit_of(whole, tool)
     rng = np.random.default_rng(3)
     for _ in range(3):
-        knots = MIDDLE + rng.uniform([-6e-3, -6e-3, -4e-3], [6e-3, 6e-3, -1e-3], (5, 3))
-        start = MIDDLE + np.array([0.0, 0.0, 1e-3])
-        corners = np.array([start, *knots, start]) + np.array([0.0, 0.0, up])
-        path = np.concatenate([np.linspace(a, b, 80, endpoint=False) for a, b in pairwise(corners)])
-        path = np.concatenate([path, corners[-1:]])
+        path = round_trip(rng, MIDDLE, up)
         fingers = fingers_on(whole, path, tool, SERIES, firmness, unit, friction=9.0)
         forces = fingers.follow(path[:, None])[0][:, 0]
-        ways = np.diff(path, axis=0)
-        work = -np.cumsum(np.einsum("ti,ti->t", 0.5 * (forces[1:] + forces[:-1]), ways))
+        work = work_against(forces, path)
         assert work[-1] > -0.01 * work.max()

@@ -104,7 +104,7 @@ impl Solver {
             [aside.y, aside.z]
         }));
         system.set_up(told, members, (forces, given.pace.may_keep));
-        system.add_springs(&self.fading);
+        system.find_springs(&self.fading);
         let rubbed = Rubbed {
             friction: &self.friction,
             pace: given.pace,

@@ -32,10 +32,13 @@ pub(super) fn rub(
 ) {
     let count = system.directions.len();
     // Of the same matrix there is a factor.
-    if !(system.is_kept && (0..count).all(|i| problem.own(i) == system.row(i)[i])) {
+    let own = |i: usize| system.row(i)[i] + system.springs[i];
+    if !(system.is_kept && (0..count).all(|i| problem.own(i) == own(i))) {
         problem.begin(count);
         for i in 0..count {
-            (problem.row_mut(i)).copy_from_slice(&system.row(i)[..count]);
+            let row = problem.row_mut(i);
+            row.copy_from_slice(&system.row(i)[..count]);
+            row[i] = own(i);
         }
     }
     problem.forces[..count].copy_from_slice(&forces[..count]);

@@ -39,11 +39,9 @@ pub(super) struct System {
     moved: Vec<Three>,
     parts: Vec<Three>,
     straight: Straight,
-    /// What the matrix was made of, without springs; whether it is that of the last tick.
+    /// What the matrix was made of; whether it is that of the last tick.
     kept: Kept,
     pub is_kept: bool,
-    /// Of pushes, how they give way themselves.
-    own: Vec<f64>,
     /// How forces that stay would move bodies as a whole.
     driven: Vec<Motion>,
 }
@@ -98,21 +96,18 @@ impl System {
             return self.stay(told, members, forces);
         }
         self.make(told, members);
-        (self.kept).take(told, members, (&self.directions, &self.rubs));
-        let count = self.at_rest.len();
-        self.own.clear();
-        (self.own).extend((0..chosen.len()).map(|place| self.matrix[place * (count + 1)]));
+        if may_keep {
+            (self.kept).take(told, members, (&self.directions, &self.rubs));
+        }
     }
 
-    /// Has each contact give way by a share more of how far it does along its push.
-    pub(super) fn add_springs(&mut self, shares: &[f64]) {
+    /// Has each contact give way by a share more of how far it does along its push: beside the matrix.
+    pub(super) fn find_springs(&mut self, shares: &[f64]) {
         let count = self.at_rest.len();
+        let own = self.matrix.iter().step_by(count + 1);
         self.springs.clear();
-        for (contact, share) in shares.iter().enumerate() {
-            let own = &mut self.matrix[contact * count + contact];
-            self.springs.push(share * *own);
-            *own += share * *own;
-        }
+        self.springs
+            .extend(shares.iter().zip(own).map(|(share, own)| share * own));
     }
 
     /// Takes all memory that it ever needs for so many contacts of so many bodies.
@@ -131,8 +126,16 @@ impl System {
         self.parts.reserve(contacts);
         self.straight.reserve(contacts, MOST_SHARES);
         self.kept.reserve(contacts, bodies);
-        self.own.reserve(contacts);
         self.driven.reserve(bodies);
+    }
+
+    /// Adds how far away a contact is besides, along its directions.
+    fn add_away(&mut self, contact: usize, away: DVec3) {
+        self.at_rest[contact] += away.x;
+        if let Some(aside) = self.aside[contact] {
+            self.at_rest[aside] += away.y;
+            self.at_rest[aside + 1] += away.z;
+        }
     }
 
     /// A row of the matrix: up to the column of the last push, or of the last force aside.

@@ -4,7 +4,7 @@
 use glam::{DMat3, DVec3};
 
 use super::doing::{Doing, changed};
-use super::hold::{Held, Spring, outer};
+use super::hold::{Spring, outer};
 use super::place::Place;
 use super::yielding::Yielding;
 use crate::solid::domains::Nodal;
@@ -31,8 +31,9 @@ pub struct Against {
     /// Of the nodes known, by rows.
     compliance: Vec<DMat3>,
     known: usize,
+    /// What is counted in of pushes, and of pulls aside, N.
     counted: Vec<f64>,
-    held: Vec<Held>,
+    pulls: Vec<DVec3>,
     /// What the places did when the body was last looked at, and how it yields under that.
     doing: Vec<Doing>,
     yielding: Yielding,
@@ -54,15 +55,15 @@ impl Against {
         };
         let fits = compliance.len() == known * known && places.iter().all(is_within);
         let at_first = |place: &Place| {
-            place
-                .hold
-                .map_or_else(Held::default, |hold| hold.at_first())
+            place.hold.map_or((0.0, DVec3::ZERO), |hold| {
+                let most = hold.friction * hold.push;
+                (hold.push, hold.pull.clamp_length_max(most))
+            })
         };
+        let (counted, pulls) = places.iter().map(at_first).unzip();
         fits.then(|| Self {
-            counted: (places.iter())
-                .map(|place| place.hold.map_or(0.0, |hold| hold.push))
-                .collect(),
-            held: places.iter().map(at_first).collect(),
+            counted,
+            pulls,
             places,
             tools,
             compliance,
@@ -106,17 +107,10 @@ impl Against {
                 let pull = self
                     .aside(one, warped)
                     .map_or(DVec3::ZERO, |spring| spring.pull());
-                let most = self.friction(one) * push;
-                (
-                    push,
-                    Held {
-                        pull: pull.clamp_length_max(most),
-                        most,
-                    },
-                )
+                (push, pull.clamp_length_max(self.friction(one) * push))
             })
             .collect();
-        (self.counted, self.held) = found.into_iter().unzip();
+        (self.counted, self.pulls) = found.into_iter().unzip();
     }
 
     /// Looks at what presses there, for [`Self::held_back`].
@@ -126,7 +120,7 @@ impl Against {
             let (push, normal, _) = self.push(place, warped);
             let aside = self
                 .aside(place, warped)
-                .filter(|_| self.held[place].most > 0.0);
+                .filter(|_| self.counted[place] > 0.0);
             if push == 0.0 && aside.is_none() {
                 continue;
             }
@@ -166,7 +160,7 @@ impl Against {
                 let firmness = self.places[one].firmness;
                 let pressed = (push * push - counted * counted) / (2.0 * firmness);
                 let aside = self.aside(one, warped).map_or(0.0, |spring| {
-                    spring.energy() - self.held[one].pull.length_squared() / (2.0 * firmness)
+                    spring.energy() - self.pulls[one].length_squared() / (2.0 * firmness)
                 });
                 pressed + aside
             })
@@ -200,8 +194,13 @@ impl Against {
     fn aside(&self, one: usize, warped: &Nodal) -> Option<Spring> {
         let place = &self.places[one];
         let hold = place.hold.as_ref()?;
-        let held = &self.held[one];
-        Some(Spring::new(hold, held, place.mean(warped), place.firmness))
+        let counted = (self.counted[one], self.pulls[one]);
+        Some(Spring::new(
+            hold,
+            counted,
+            place.mean(warped),
+            place.firmness,
+        ))
     }
 
     fn friction(&self, one: usize) -> f64 {

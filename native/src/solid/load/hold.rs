@@ -17,29 +17,9 @@ pub struct Hold {
     pub pull: DVec3,
 }
 
-impl Hold {
-    /// What is counted in of it before anything is.
-    pub fn at_first(&self) -> Held {
-        let most = self.friction * self.push;
-        Held {
-            pull: self.pull.clamp_length_max(most),
-            most,
-        }
-    }
-}
-
-/// What is counted in of a hold.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Held {
-    /// The force aside, N.
-    pub pull: DVec3,
-    /// By how much it holds at most, N.
-    pub most: f64,
-}
-
 /// The force aside of a stiff spring to where a place is held, beside what is counted in.
 ///
-/// Cut at what holds at most: the slope of an energy, so that there is a rest, and by the counting Coulomb's
+/// Cut at what friction gives: the slope of an energy, so that there is a rest, and by the counting Coulomb's
 /// law (J. C. Simo, T. A. Laursen: An augmented Lagrangian treatment of contact problems involving friction,
 /// Computers and Structures 42, 1992).
 #[derive(Debug, Clone, Copy)]
@@ -54,15 +34,15 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// Of a place that has moved.
-    pub fn new(hold: &Hold, held: &Held, moved: DVec3, firmness: f64) -> Self {
+    /// Of a place that has moved, of which a push and a pull aside are counted in.
+    pub fn new(hold: &Hold, (push, pull): (f64, DVec3), moved: DVec3, firmness: f64) -> Self {
         let away = hold.goal - moved;
         let aside = away - hold.normal * hold.normal.dot(away);
-        let wanted = held.pull + firmness * aside;
+        let wanted = pull + firmness * aside;
         Self {
             wanted,
             size: wanted.length(),
-            most: held.most,
+            most: hold.friction * push,
             firmness,
             way: aside.length(),
         }

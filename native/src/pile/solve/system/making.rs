@@ -40,24 +40,19 @@ impl System {
             if sign == 0.0 {
                 continue;
             }
-            let (first, mut place, mut last) = (self.shares.len(), DVec3::ZERO, 0);
-            for &(point, share) in contacts[number].shares_on(body) {
-                place += member.slots()[member.slot(point)].arm * share;
+            let (first, mut last) = (self.shares.len(), 0);
+            let shares = contacts[number].shares_on(body);
+            for &(point, share) in shares {
                 self.shares.push((member.slot(point), share));
                 last = last.max(member.slot(point));
             }
             let ways = turn * self.directions[contact] * sign;
-            let mut along = [0.0; 12];
-            for axis in 0..3 {
-                let parts = ways.row(axis).to_array();
-                along[4 * axis..][..3].copy_from_slice(&parts);
-            }
             self.sides.push(Side {
                 contact,
                 slots: first..self.shares.len(),
                 ways,
-                along,
-                arm: place - centre,
+                along: turned_over(&ways),
+                arm: member.arm(shares) - centre,
                 last,
             });
         }
@@ -71,21 +66,12 @@ impl System {
         let between = member.between();
         for number in 0..self.sides.len() {
             let (loaded, seen) = (&self.sides[number], &self.sides[..=number]);
-            let DMat3 {
-                x_axis,
-                y_axis,
-                z_axis,
-            } = loaded.ways;
-            let ways = [x_axis, y_axis, z_axis];
-            let by = ways.map(|way| way / member.young_modulus);
-            let shares = &self.shares[loaded.slots.clone()];
+            let (ways, shares) = (loaded.ways, &self.shares[loaded.slots.clone()]);
+            let by = ways / member.young_modulus;
             between.move_by(shares, &by, loaded.last + 1, &mut self.slots);
-            let carried = (member.mobility).map_or_else(Carried::default, |mobility| {
-                let turns = mobility.turns(loaded.arm);
-                Carried {
-                    shift: turned_over(&ways.map(|way| way * mobility.shift)),
-                    turn: turned_over(&ways.map(|way| turns * way)),
-                }
+            let carried = (member.mobility).map_or_else(Carried::default, |mobility| Carried {
+                shift: turned_over(&(ways * mobility.shift)),
+                turn: turned_over(&(mobility.turns(loaded.arm) * ways)),
             });
             let memory = [&mut self.moved, &mut self.parts];
             seen_by(seen, &self.shares, &self.slots.slots, &carried, memory);
@@ -109,16 +95,13 @@ impl System {
     /// Adds where the contacts of a body are without forces.
     fn add_rest(&mut self, member: &Member) {
         let drift = (member.mobility).map_or(DVec3::ZERO, |mobility| mobility.drift);
-        for side in &self.sides {
+        for number in 0..self.sides.len() {
+            let side = &self.sides[number];
             let elastic: DVec3 = (self.shares[side.slots.clone()].iter())
                 .map(|&(slot, share)| member.slots()[slot].moved * share)
                 .sum();
             let away = side.ways.transpose() * (drift - elastic);
-            self.at_rest[side.contact] += away.x;
-            if let Some(aside) = self.aside[side.contact] {
-                self.at_rest[aside] += away.y;
-                self.at_rest[aside + 1] += away.z;
-            }
+            self.add_away(side.contact, away);
         }
     }
 }

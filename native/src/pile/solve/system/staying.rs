@@ -18,9 +18,6 @@ impl System {
         forces: &[f64],
     ) {
         let (pushes, count) = (chosen.len(), self.at_rest.len());
-        for (place, &own) in self.own.iter().enumerate() {
-            self.matrix[place * (count + 1)] = own;
-        }
         self.driven.clear();
         self.driven.extend(members.iter().map(Member::driven));
         for (place, &number) in chosen.iter().enumerate() {
@@ -31,12 +28,7 @@ impl System {
                 let by = self.driven[body].at(member.arm(contact.shares_on(body)));
                 moved += member.placement.rotation * by * contact.sign_on(body);
             }
-            let away = self.directions[place].transpose() * moved;
-            self.at_rest[place] += away.x;
-            if let Some(aside) = self.aside[place] {
-                self.at_rest[aside] += away.y;
-                self.at_rest[aside + 1] += away.z;
-            }
+            self.add_away(place, self.directions[place].transpose() * moved);
         }
         let (push, asides) = forces.split_at(pushes);
         let (at_rest, at_rest_aside) = self.at_rest.split_at_mut(pushes);
