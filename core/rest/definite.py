@@ -3,7 +3,7 @@
 The near field takes a body for a half-space around each point. On a part of a few elements, as all
 along the edges of a bar, that can add up until forces spread evenly over much of the surface would
 give energy. Of such *modes* a body has one or two. With C between all points, and c the least
-principal value of each point's own block,
+principal value of each point's own block, or of a half-space's where that is less, as on an ear,
 
     C' = C + sum_k l_k v_k v_k^T,   l_k and v_k: what C - LEAST_SHARE diag(c) has below zero
 
@@ -24,6 +24,7 @@ from scipy.spatial import cKDTree
 from ..body.soft_body import SoftBody
 from ..contact.near_field.compliance_beneath import NearCorrection, near_correction
 from ..contact.near_field.contact_points import ContactPoints, contact_points
+from ..contact.near_field.half_space import own_displacement
 from ..contact.near_field.point_compliance import point_compliance
 
 Array = NDArray[np.float64]
@@ -59,8 +60,10 @@ def modes(body: SoftBody, near: NearCorrection) -> Array:
     everyone = np.arange(len(near.points))
     blocks = point_compliance(body, near.points, everyone, everyone, near)
     own = np.linalg.eigvalsh(blocks[everyone, everyone])[:, 0]
+    alone = own_displacement(near.points.areas, near.points.normals, body.poisson_ratio)
+    least = np.minimum(own, near.softness * np.linalg.eigvalsh(alone)[:, 0])
     beyond = as_matrix(blocks)
-    beyond[np.diag_indices_from(beyond)] -= LEAST_SHARE * np.repeat(np.maximum(own, 0.0), 3)
+    beyond[np.diag_indices_from(beyond)] -= LEAST_SHARE * np.repeat(np.maximum(least, 0.0), 3)
     try:
         cholesky(beyond, lower=True, check_finite=False)
     except LinAlgError:

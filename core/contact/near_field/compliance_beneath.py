@@ -23,14 +23,13 @@ from ...body.pair_blocks import pair_blocks
 from ...body.soft_body import SoftBody
 from ...stiffness.formulation import LINEAR, SMOOTHED
 from .contact_points import ContactPoints
-from .half_space import own_displacement
+from .half_space import half_space_between, own_displacement
 from .regular_field import (
     BELIEVED,
     SHORT_NOWHERE,
     SHORT_WITHIN,
     RegularField,
     facing,
-    half_space_between,
 )
 from .rim_field import with_rims
 from .solid_angle import sharpness, solid_angles

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...body.soft_body import SoftBody
+
 # A pressure that varies smoothly, gathered in the points of a square lattice of cells of area A,
 # moves one of these points by what all others do, plus its own force over this length: the rule
 # of the punctured lattice needs 4 zeta(1/2) beta(1/2) = -3.9003 to be exact to second order (and
@@ -51,3 +53,24 @@ def own_displacement(
     scale = (1 + poisson_ratio) / np.pi * OWN_CELL / np.sqrt(areas)
     scaled: NDArray[np.float64] = scale[:, None, None] * blocks
     return scaled
+
+
+def half_space_between(
+    body: SoftBody,
+    places: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    softness: NDArray[np.float64],
+    a: NDArray[np.int64],
+    b: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """H between places a (k,) and b (k,), (k, 3, 3)."""
+    normal = unit_normals(normals[a] + normals[b])
+    blocks = surface_displacement(places[a] - places[b], normal, body.poisson_ratio)
+    blocks *= np.sqrt(softness[a] * softness[b])[:, None, None]
+    return blocks
+
+
+def unit_normals(sums: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sums of two normals (k, 3) made unit vectors; shorter ones where they cancel."""
+    unit: NDArray[np.float64] = sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 0.5)
+    return unit

@@ -11,10 +11,14 @@ edges. So that share is told from the ring too, and taken for what it is, an err
 A thin part bends, on the scale of the ring: no plane. But how far the far side moves is nearly all
 bending, and the elements have it right. So that is taken off the ring's samples, and added where
 the fit is used: two forces that squeeze the part between them then meet no bending.
+
+On a limp part, an ear or a tail, what is left of the bending is still a multiple of all that a
+half-space gives way by, and of what the fit errs by. There plain finite elements stay.
 """
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +29,7 @@ from ...body.pair_blocks import pair_blocks
 from ...body.soft_body import SoftBody
 from ...stiffness.formulation import LINEAR, SMOOTHED
 from .far_side import FarSide, far_side
-from .half_space import surface_displacement
+from .half_space import half_space_between, own_displacement, unit_normals
 from .surface_nodes import (
     mean_edges,
     of_one_material,
@@ -34,7 +38,7 @@ from .surface_nodes import (
     surface_evenness,
     surface_softness,
 )
-from .surface_shape import node_normals
+from .surface_shape import node_areas, node_normals
 
 # Distances in mean edge lengths of two nodes: within the first finite elements are not believed at
 # all, from the second on wholly; the ring lies between the third and the fourth. Smoothed elements
@@ -61,6 +65,11 @@ MOST_SHORT = 0.1
 
 # Below this share of what it could be at most, the determinant of a ring tells nothing.
 LEAST_SPREAD = 0.02
+
+# Nodes that go along with their part up to so many times as far as they press into a half-space of
+# the softest material are told by the ring, and from the second number on by the finite elements
+# alone. Ears and tails have hundreds, stout bodies 3 at most.
+LIMP = (3.0, 10.0)
 
 # Neighbours of a ring at least.
 FEWEST_IN_RING = 2.0
@@ -126,7 +135,8 @@ class RegularField:
         regular, slope, known = _fitted(node, offsets, beyond, weight, edges)
         trusted = surface_evenness(body)
         trusted[~known | (body.free_index(mesh.surface_nodes) < 0)] = 0.0
-        return cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
+        field = cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
+        return dataclasses.replace(field, trusted=trusted * (1.0 - _limpness(field)))
 
     def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
         """Regular part for nodes near each other, (k, 3, 3): the mean of both rings' estimates.
@@ -163,6 +173,21 @@ class RegularField:
         return places
 
 
+def _limpness(field: RegularField) -> NDArray[np.float64]:
+    """Degree to which each node is of a limp part, (s,), 0 to 1."""
+    body, everyone = field.body, np.arange(len(field.normals))
+    along = field.regular + seen_across(body, field.far, everyone, everyone)
+    alone = own_displacement(node_areas(body.mesh), field.normals, body.poisson_ratio)
+    # A bone goes along with the flesh around it.
+    alone *= field.softness.max()
+    times = np.trace(along, axis1=1, axis2=2) / np.trace(alone, axis1=1, axis2=2)
+    few, many = np.log(LIMP)
+    share: NDArray[np.float64] = np.clip(
+        (np.log(np.maximum(times, LIMP[0])) - few) / (many - few), 0.0, 1.0
+    )
+    return share
+
+
 def seen_across(
     body: SoftBody, far: FarSide, a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> NDArray[np.float64]:
@@ -183,7 +208,7 @@ def _coupling(offsets: NDArray[np.float64], normals: NDArray[np.float64]) -> NDA
     At ``offsets`` (k, 3) from the force, with ``normals`` (k, 3) of any length.
     """
     along = offsets / np.linalg.norm(offsets, axis=1, keepdims=True)
-    normal = _unit_normals(normals)
+    normal = unit_normals(normals)
     product = np.einsum("kx,ky->kxy", along, normal)
     antisymmetric: NDArray[np.float64] = product - product.transpose(0, 2, 1)
     return antisymmetric
@@ -260,24 +285,3 @@ def facing(
     alike = np.einsum("kx,kx->k", first, second)
     share: NDArray[np.float64] = np.clip((alike - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
     return share
-
-
-def half_space_between(
-    body: SoftBody,
-    places: NDArray[np.float64],
-    normals: NDArray[np.float64],
-    softness: NDArray[np.float64],
-    a: NDArray[np.int64],
-    b: NDArray[np.int64],
-) -> NDArray[np.float64]:
-    """H between places a (k,) and b (k,), (k, 3, 3)."""
-    normal = _unit_normals(normals[a] + normals[b])
-    blocks = surface_displacement(places[a] - places[b], normal, body.poisson_ratio)
-    blocks *= np.sqrt(softness[a] * softness[b])[:, None, None]
-    return blocks
-
-
-def _unit_normals(sums: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Sums of two normals (k, 3) made unit vectors; shorter ones where they cancel."""
-    unit: NDArray[np.float64] = sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 0.5)
-    return unit

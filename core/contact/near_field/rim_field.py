@@ -19,13 +19,12 @@ from numpy.typing import NDArray
 
 from ...body.pair_blocks import pair_blocks
 from ...stiffness.formulation import SMOOTHED
-from .half_space import own_displacement
+from .half_space import half_space_between, own_displacement
 from .regular_field import (
     BELIEVED,
     SAME_SIDE,
     RegularField,
     facing,
-    half_space_between,
     seen_across,
 )
 from .solid_angle import edge_shares, node_angles, sharpness
