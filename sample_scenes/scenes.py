@@ -88,6 +88,12 @@ def plush_mouse(scene: bpy.types.Scene) -> bpy.types.Object:
     return mouse
 
 
+def felt_vertices(mouse: bpy.types.Mesh) -> NDArray[np.int64]:
+    """Vertices of the mouse's faces that are of felt."""
+    corners = [v for face in mouse.polygons if face.material_index == 1 for v in face.vertices]
+    return np.unique(np.array(corners, dtype=np.int64))
+
+
 def cube_scene() -> bpy.types.Object:
     """The paper's cube, 50 mm, pinned at the bottom."""
     scene = studio.empty_scene("Cube")

@@ -22,6 +22,8 @@ RADII = (0.0075, 0.0085, 0.0095)
 # Frames, and heights of the fingertip's middle over the table then.
 FRAMES, HEIGHTS = (1, 14, 30, 40), (0.085, 0.052, 0.052, 0.085)
 PLACE, BAKED_STEP = (-0.012, 0.0), 3
+# The vertex group of what is sewn of felt, and how many times as stiff as plush that is.
+FELT, FELT_FACTOR = "Felt", 300.0
 WOOD, SKIN = (0.45, 0.25, 0.11), (0.80, 0.50, 0.38)
 
 
@@ -32,6 +34,10 @@ def table_scene() -> list[bpy.types.Object]:
     mouse.name, mouse.location.z = NAME, HEIGHT + 0.001
     settings = mouse.palpate
     settings.pin_mode, settings.pin_group, settings.static_friction = "NONE", "", 0.8
+    # Of plush the tail would sag by many times its length.
+    felt = scenes.felt_vertices(mouse.data)
+    mouse.vertex_groups.new(name=FELT).add(felt.tolist(), 1.0, "REPLACE")
+    bodies.set_stiff(mouse, FELT, FELT_FACTOR)
     bearing = bpy.data.collections.new("Bearing")
     scene.collection.children.link(bearing)
     bearing.objects.link(_table())
