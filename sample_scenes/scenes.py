@@ -90,8 +90,8 @@ def plush_mouse(scene: bpy.types.Scene) -> bpy.types.Object:
 
 def felt_vertices(mouse: bpy.types.Mesh) -> NDArray[np.int64]:
     """Vertices of the mouse's faces that are of felt."""
-    corners = [v for face in mouse.polygons if face.material_index == 1 for v in face.vertices]
-    return np.unique(np.array(corners, dtype=np.int64))
+    felt = [face for face in mouse.polygons if face.material_index == mouse_shape.Part.FELT]
+    return np.unique(np.array([v for face in felt for v in face.vertices], dtype=np.int64))
 
 
 def cube_scene() -> bpy.types.Object:

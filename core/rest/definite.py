@@ -24,7 +24,7 @@ from scipy.spatial import cKDTree
 from ..body.soft_body import SoftBody
 from ..contact.near_field.compliance_beneath import NearCorrection, near_correction
 from ..contact.near_field.contact_points import ContactPoints, contact_points
-from ..contact.near_field.half_space import own_displacement
+from ..contact.near_field.half_space import least_own_displacement
 from ..contact.near_field.point_compliance import point_compliance
 
 Array = NDArray[np.float64]
@@ -60,8 +60,9 @@ def modes(body: SoftBody, near: NearCorrection) -> Array:
     everyone = np.arange(len(near.points))
     blocks = point_compliance(body, near.points, everyone, everyone, near)
     own = np.linalg.eigvalsh(blocks[everyone, everyone])[:, 0]
-    alone = own_displacement(near.points.areas, near.points.normals, body.poisson_ratio)
-    least = np.minimum(own, near.softness * np.linalg.eigvalsh(alone)[:, 0])
+    points = near.points
+    alone = least_own_displacement(points.areas, points.normals, body.poisson_ratio)
+    least = np.minimum(own, near.softness * alone)
     beyond = as_matrix(blocks)
     beyond[np.diag_indices_from(beyond)] -= LEAST_SHARE * np.repeat(np.maximum(least, 0.0), 3)
     try:

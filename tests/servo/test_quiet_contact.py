@@ -24,11 +24,12 @@ def shaken(cube, eventually, coupling):
     hum is there in every one of them. One that holds it up for so long that the device is let go
     tells nothing of either, and all is done once more.
     """
-    return eventually(lambda: shaken_once(cube, eventually, coupling), seconds=60.0)[0]
+    taken = eventually(lambda: taken_by_friction(cube, eventually, coupling), seconds=60.0)
+    return min(after - before for before, after in pairwise(taken))
 
 
-def shaken_once(cube, eventually, coupling):
-    """The same in a tuple, or None if the device was let go."""
+def taken_by_friction(cube, eventually, coupling):
+    """What it has taken so far, five times, J; None if the device was let go."""
     late = SimulatedOptions(
         rest=ABOVE,
         mass=0.06,
@@ -59,9 +60,7 @@ def shaken_once(cube, eventually, coupling):
             assert report["target"] == pytest.approx(PRESSED)
             taken.append(report["taken_by_viscous_friction"] + report["taken_by_coulomb_friction"])
             time.sleep(0.3)
-        if servo.counters()["faults"] != faults:
-            return None
-    return (min(after - before for before, after in pairwise(taken)),)
+        return taken if servo.counters()["faults"] == faults else None
 
 
 @pytest.mark.in_time

@@ -23,7 +23,7 @@ from ...body.pair_blocks import pair_blocks
 from ...body.soft_body import SoftBody
 from ...stiffness.formulation import LINEAR, SMOOTHED
 from .contact_points import ContactPoints
-from .half_space import half_space_between, own_displacement
+from .half_space import half_space_between, least_own_displacement, own_displacement
 from .regular_field import (
     BELIEVED,
     SHORT_NOWHERE,
@@ -194,7 +194,7 @@ def _corrections(
         a, b = i[few], j[few]
         found = _replaced(field, points, a, b)
         found += half_space_between(
-            field.body, points.positions, points.normals, near.softness, a, b
+            field.body.poisson_ratio, points.positions, points.normals, near.softness, a, b
         )
         blocks[few] = share[few][:, None, None] * found
     return blocks
@@ -247,8 +247,8 @@ def _lifted(
         whole += (weights[:, pair, None] * resolved[place, pair]).reshape(count, 3, 3)
     firmest = OWN_PINNED / np.linalg.eigvalsh(body.contact_blocks).max()
     whole += firmest * pinned[:, None, None] * np.eye(3)
-    alone = own_displacement(points.areas, points.normals, body.poisson_ratio)
-    least = LEAST_OWN * softness * np.linalg.eigvalsh(alone)[:, 0] * (1 - pinned)
+    alone = least_own_displacement(points.areas, points.normals, body.poisson_ratio)
+    least = LEAST_OWN * softness * alone * (1 - pinned)
     missing = np.maximum(least - np.linalg.eigvalsh(whole)[:, 0], 0.0)
     lift: NDArray[np.float64] = (firmest * pinned + missing)[:, None, None] * np.eye(3)
     return lift
@@ -281,7 +281,7 @@ def _node_table(
     blocks = np.zeros((len(a), 3, 3))
     far = np.flatnonzero(doubt < 1)
     resembled = field.short(a[far], b[far]) + half_space_between(
-        field.body, places, field.normals, field.softness, a[far], b[far]
+        field.body.poisson_ratio, places, field.normals, field.softness, a[far], b[far]
     )
     blocks[far] = (1 - doubt[far])[:, None, None] * resembled
     near = np.flatnonzero(doubt > 0)

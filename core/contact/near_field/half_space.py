@@ -9,8 +9,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...body.soft_body import SoftBody
-
 # A pressure that varies smoothly, gathered in the points of a square lattice of cells of area A,
 # moves one of these points by what all others do, plus its own force over this length: the rule
 # of the punctured lattice needs 4 zeta(1/2) beta(1/2) = -3.9003 to be exact to second order (and
@@ -55,17 +53,24 @@ def own_displacement(
     return scaled
 
 
+def least_own_displacement(
+    areas: NDArray[np.float64], normals: NDArray[np.float64], poisson_ratio: float
+) -> NDArray[np.floating]:
+    """The same in the direction in which it is least, (k,)."""
+    return np.linalg.eigvalsh(own_displacement(areas, normals, poisson_ratio))[:, 0]
+
+
 def half_space_between(
-    body: SoftBody,
+    poisson_ratio: float,
     places: NDArray[np.float64],
     normals: NDArray[np.float64],
     softness: NDArray[np.float64],
     a: NDArray[np.int64],
     b: NDArray[np.int64],
 ) -> NDArray[np.float64]:
-    """H between places a (k,) and b (k,), (k, 3, 3)."""
+    """H between places a (k,) and b (k,), (k, 3, 3), by their ``softness``."""
     normal = unit_normals(normals[a] + normals[b])
-    blocks = surface_displacement(places[a] - places[b], normal, body.poisson_ratio)
+    blocks = surface_displacement(places[a] - places[b], normal, poisson_ratio)
     blocks *= np.sqrt(softness[a] * softness[b])[:, None, None]
     return blocks
 

@@ -18,7 +18,6 @@ half-space gives way by, and of what the fit errs by. There plain finite element
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,13 +118,19 @@ class RegularField:
         alike *= of_one_material(softness[a], softness[b])
         ring = np.flatnonzero((apart >= inner * reach) & (apart <= outer * reach) & (alike > 0))
         a, b, weight = a[ring], b[ring], alike[ring]
-        beyond = pair_blocks(body, a, b) - half_space_between(body, places, normals, softness, a, b)
+        beyond = pair_blocks(body, a, b)
+        beyond -= half_space_between(body.poisson_ratio, places, normals, softness, a, b)
         far = far_side(mesh, mean_edges(body), THIN)
         # Seen at a with the force at b, and the other way round.
         node, other = np.concatenate([a, b]), np.concatenate([b, a])
         offsets = places[other] - places[node]
         beyond = np.concatenate([beyond, beyond.transpose(0, 2, 1)])
-        beyond -= seen_across(body, far, node, other)
+        # The nodes themselves too: a compressed compliance is unpacked once for all of these.
+        everyone = np.arange(len(places))
+        across = seen_across(
+            body, far, np.concatenate([node, everyone]), np.concatenate([other, everyone])
+        )
+        beyond -= across[: len(node)]
         weight = np.concatenate([weight, weight])
         coupling = _coupling(-offsets, normals[node] + normals[other])
         excess = _excess(node, offsets, beyond, coupling, weight, edges)
@@ -135,8 +140,8 @@ class RegularField:
         regular, slope, known = _fitted(node, offsets, beyond, weight, edges)
         trusted = surface_evenness(body)
         trusted[~known | (body.free_index(mesh.surface_nodes) < 0)] = 0.0
-        field = cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
-        return dataclasses.replace(field, trusted=trusted * (1.0 - _limpness(field)))
+        trusted *= 1.0 - _limpness(body, normals, softness, regular + across[len(node) :])
+        return cls(body, normals, edges, regular, slope, excess, softness, trusted, far)
 
     def between(self, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.float64]:
         """Regular part for nodes near each other, (k, 3, 3): the mean of both rings' estimates.
@@ -173,17 +178,20 @@ class RegularField:
         return places
 
 
-def _limpness(field: RegularField) -> NDArray[np.float64]:
-    """Degree to which each node is of a limp part, (s,), 0 to 1."""
-    body, everyone = field.body, np.arange(len(field.normals))
-    along = field.regular + seen_across(body, field.far, everyone, everyone)
-    alone = own_displacement(node_areas(body.mesh), field.normals, body.poisson_ratio)
+def _limpness(
+    body: SoftBody,
+    normals: NDArray[np.float64],
+    softness: NDArray[np.float64],
+    along: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Degree to which each node is of a limp part, (s,), 0 to 1, by how far it goes ``along`` with
+    its part under its own force, (s, 3, 3).
+    """
     # A bone goes along with the flesh around it.
-    alone *= field.softness.max()
+    alone = own_displacement(node_areas(body.mesh), normals, body.poisson_ratio) * softness.max()
     times = np.trace(along, axis1=1, axis2=2) / np.trace(alone, axis1=1, axis2=2)
-    few, many = np.log(LIMP)
-    share: NDArray[np.float64] = np.clip(
-        (np.log(np.maximum(times, LIMP[0])) - few) / (many - few), 0.0, 1.0
+    share: NDArray[np.float64] = np.interp(
+        np.log(np.maximum(times, LIMP[0])), np.log(LIMP), (0.0, 1.0)
     )
     return share
 

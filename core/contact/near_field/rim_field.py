@@ -87,7 +87,9 @@ def _in_the_mean(
     summed -= seen_across(body, field.far, everyone, everyone)
     summed *= areas[:, None, None]
     beyond = pair_blocks(body, node, other)
-    beyond -= half_space_between(body, places, field.normals, field.softness, node, other)
+    beyond -= half_space_between(
+        body.poisson_ratio, places, field.normals, field.softness, node, other
+    )
     beyond -= np.einsum("kz,kzxy->kxy", places[other] - places[node], field.slope[node])
     beyond -= seen_across(body, field.far, node, other)
     pressed = weight * areas[other]
