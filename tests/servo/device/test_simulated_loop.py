@@ -138,9 +138,11 @@ def test_a_clean_link_loses_nothing(loop, eventually):
     assert (link["crc_errors"], link["cobs_errors"]) == (0, 0)
     # Those that the device itself let fall: a host that is held up does not read.
     assert link["lost"] <= report["states_dropped"]
-    assert [report[name] for name in ("lost", "duplicates", "out_of_order", "clamped")] == [0] * 4
+    assert [report[name] for name in ("duplicates", "out_of_order", "clamped")] == [0] * 3
     assert [report[name] for name in ("crc_errors", "malformed", "unknown")] == [0] * 3
-    assert report["forces"] == link["forces"]
+    # What came to a device that was held up itself is too old for it, and a gap before the next.
+    assert report["lost"] <= report["refused"]
+    assert report["forces"] + report["refused"] == link["forces"]
 
 
 # The guardian of a servo that is held up says zero, with a number 64 ahead of the last one.
