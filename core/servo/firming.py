@@ -19,8 +19,9 @@ from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike
 from ..shape.rotation_strain.firmness import Firmness
 from ..shape.shapes import Shape, pressed_by
 
-# It is looked for a little deeper than fingers are that move: they may go on.
-AHEAD = 1.2
+# It is looked for a little deeper than fingers are that move, and as much deeper as they have gone
+# since the last look, for they may go on; times the depth, at least and at most.
+AHEAD, FARTHEST_AHEAD = 1.2, 1.6
 # Fingers whose forces changed by less than this share press as they did; by less than the other
 # between two calls, they are at rest.
 SAME, AT_REST = 0.03, 1e-6
@@ -97,13 +98,19 @@ class Firming:
             if self._looked.loads:
                 self._tell(found)
         rests, self._before = alike(loads, self._before, AT_REST), loads
-        ahead = 1.0 if rests else AHEAD
+        ahead = 1.0 if rests else self._ahead(loads)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
             return
         self._looked = _Look(loads, ahead)
         self._finding = self._worker.submit(
             _firmness, shape, self._looked, young_modulus, snapshot.held
         )
+
+    def _ahead(self, loads: Sequence[FingerLoad]) -> float:
+        """How many times as deep fingers may be by the end of a look that go on as until now."""
+        before = _pushed(self._looked.loads)
+        grown = 1.0 - before / _pushed(loads) if loads and before > 0.0 else 0.0
+        return min(max(1.0 + grown, AHEAD), FARTHEST_AHEAD)
 
     def pressing(self, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
         """Loads of the fingers that touch, and of what bears the body, as a linear one would have
@@ -178,6 +185,11 @@ class Firming:
         if firmness != self._told:
             self._told = firmness
             self.servo.set_firmness(firmness.root, firmness.whole, firmness.reach)
+
+
+def _pushed(loads: Sequence[FingerLoad]) -> float:
+    """How strongly all of them press, N."""
+    return float(sum(np.linalg.norm(load.forces.sum(axis=0)) for load in loads))
 
 
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,9 @@ from palpate.core.servo.settings import Settings
 from .energy_loops import Follow, Loop
 
 Vectors = NDArray[np.float64]
+
+# Ticks after which another firmness comes.
+CHANGED = 150
 
 
 @dataclass(frozen=True)
@@ -46,23 +50,28 @@ def led(
     loops: Sequence[Loop],
     tips: Sequence[Tip],
     motors: float | None = None,
-    firmness: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    firmnesses: Sequence[tuple[float, float, float]] = ((0.0, 0.0, 0.0),),
 ) -> Follow:
     """A finger for each loop, set down in the air where that begins: its front is led, and looks
     where the way goes in.
 
-    ``motors`` bear so much, newton; None without motors. ``firmness`` as `set_firmness` takes it.
+    ``motors`` bear so much, newton; None without motors. ``firmnesses`` are as `set_firmness` takes
+    one, each for CHANGED ticks and then the next, over and over.
     """
     raised = np.array([tip.front * loop.normal for tip, loop in zip(tips, loops, strict=True)])
     starts = np.array([loop.press[0] for loop in loops]) + raised
     fingers = SteppedFingers(native, starts, settings, max_force=motors)
-    fingers.set_firmness(*firmness)
+    coming = cycle(firmnesses)
     for number, (tip, loop) in enumerate(zip(tips, loops, strict=True)):
         if tip.made is not None:
             fingers.set_tool(tip.made, _facing(loop.normal).tolist(), number)
 
     def follow(path: Vectors) -> tuple[Vectors, Vectors]:
-        forces = np.asarray(fingers.sent(path + raised))
+        sent = []
+        for begin in range(0, len(path), CHANGED):
+            fingers.set_firmness(*next(coming))
+            sent.append(fingers.sent(path[begin : begin + CHANGED] + raised))
+        forces = np.concatenate(sent)
         shots = fingers.snapshot().fingers
         return forces, np.array([_place(shot) for shot in shots])
 

@@ -1,5 +1,7 @@
 """A running servo that comes to press as firmly as the body's own law."""
 
+from concurrent.futures import Future
+
 import numpy as np
 import pytest
 from bodies.baked_body import baked_body
@@ -10,10 +12,12 @@ from palpate.core.contact.place import nearest_place
 from palpate.core.contact.single_press import press_tool, touch_at, touch_nearest
 from palpate.core.contact.tool.pose import Pose, facing
 from palpate.core.contact.tool.tools import plate, sphere
+from palpate.core.servo import firming as firming_module
 from palpate.core.servo.firming import Firming
 from palpate.core.servo.session import Pointer, native_body, native_tool, servo_on
 from palpate.core.servo.settings import Settings
 from palpate.core.shape.felt import felt
+from palpate.core.shape.rotation_strain.firmness import LINEAR
 from palpate.core.shape.shapes import LinearShape, shape
 
 ABOVE, DEEP, DEPTH = (0.025, 0.025, 0.051), (0.025, 0.025, 0.038), 0.012
@@ -87,6 +91,37 @@ def test_a_linear_shape_leaves_it_linear(cube_body, servo, real, eventually):
         assert is_there()
     assert servo.snapshot().firmness == 1.0
     firming.close()
+
+
+class AtOnce:
+    """Does what it is given before it goes on."""
+
+    def submit(self, work, *given):
+        done = Future()
+        done.set_result(work(*given))
+        return done
+
+    def shutdown(self, **_):
+        pass
+
+
+def test_it_looks_as_much_deeper_as_fingers_have_gone_since_the_last_look(cube_body, monkeypatch):
+    looks = []
+
+    def look(shape, loads, young_modulus, ahead):
+        looks.append(ahead)
+        return LINEAR
+
+    monkeypatch.setattr(firming_module, "pressed_by", look)
+    native = native_body(cube_body, whole=True)
+    depths = np.array([-0.001, 0.001, 0.002, 0.0025, 0.0026, 0.002, 0.006])
+    places = np.array([0.025, 0.025, 0.05]) - depths[:, None] * np.eye(3)[2]
+    servo = SteppedFingers(native, places[:1], Settings(cube_body.young_modulus))
+    firming, made = Firming(servo, cube_body, _worker=AtOnce()), LinearShape(cube_body)
+    for place in places:
+        servo.follow(np.tile(place, (3, 1, 1)))
+        firming.follow(servo.snapshot(), made, cube_body.young_modulus)
+    assert looks == pytest.approx([1.2, 1.5, 1.2, 1.2, 1.2, 1.6], rel=1e-3)
 
 
 # Tools, and how deep they go: a plate's edges come to rest in one way where they are in by no more

@@ -2,6 +2,7 @@
 
 pub mod coupling;
 pub mod firmness;
+pub mod lending;
 pub mod passivity;
 pub mod pressed;
 pub mod safety;

@@ -33,6 +33,8 @@ pub struct Pressed {
     pub energy: f64,
     /// What its own force alone puts into the body, J.
     pub own_energy: f64,
+    /// What another firmness has put into its share in this tick, J.
+    pub lent: f64,
     /// What is asked of the motors but for a brake, N.
     pub wanted: DVec3,
     /// By which law it presses.
@@ -71,8 +73,18 @@ impl Pressed {
 
     /// The energy that is had back by going straight out, J: less where the force is cut off.
     pub(super) fn held(&self) -> f64 {
+        self.energy * self.had_back()
+    }
+
+    /// The part of that which is lent, J.
+    pub(super) fn lent(&self) -> f64 {
+        self.lent * self.had_back()
+    }
+
+    /// Of its energy the share that is had back by going straight out.
+    fn had_back(&self) -> f64 {
         let share = self.sent_share();
-        self.energy * share * (2.0 - share)
+        share * (2.0 - share)
     }
 
     /// How deep it is, m; 0 unless it presses.

@@ -16,6 +16,10 @@
 //! A brake is as large as the debt asks, up to the push as sent. It grows and turns over a short piece of the
 //! way, solved implicitly, so that no step is too long for it: so it is continuous, and knows neither the
 //! mesh nor the speed.
+//!
+//! What another firmness puts into the body is lent: it is owed as well, but by those alone who go out, and of
+//! each piece of the way out in proportion. Whoever goes on in has not had it, and with the share of what is held
+//! that is lent kept back from every push, nothing of it is left on the surface.
 
 use glam::DVec3;
 
@@ -51,6 +55,8 @@ struct Brake {
     direction: DVec3,
     /// The finger's way in this tick, m.
     way: DVec3,
+    /// What is kept back of what is lent, as a push, N.
+    kept_back: DVec3,
     /// What was sent less than asked, with the brake, N.
     beside: DVec3,
 }
@@ -70,7 +76,12 @@ impl Brake {
 
     /// As a push, N.
     fn force(&self) -> DVec3 {
-        self.direction * self.size
+        self.direction * self.size + self.kept_back
+    }
+
+    /// The share of a push that may be kept back: all on the way straight out.
+    fn outwards(&self, push: DVec3) -> f64 {
+        (-self.direction.dot(push.normalize_or_zero())).max(0.0)
     }
 
     /// What it takes from this tick's way for each newton, J; the other half is the next tick's.
@@ -79,13 +90,22 @@ impl Brake {
     }
 
     /// Grows towards a size, at most as large as the push as sent, no faster than the way allows; but
-    /// it is at least that share of the push.
+    /// it is at least that share of the push. What is kept back is no longer there for it.
     fn grow(&mut self, size: f64, least: f64, pressed: &Pressed) {
-        let most = pressed.felt().length();
+        let most = (pressed.felt().length() - self.kept_back.length()).max(0.0);
         let change = most * self.way.length() / (GROWING * pressed.depth());
         let size = size.clamp(self.size - change, self.size + change);
         self.size = size.clamp(least * most, most);
     }
+}
+
+/// What a body can give back more than in the tick before besides what fingers hold, J.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Given {
+    /// All of it.
+    pub all: f64,
+    /// What another firmness has put in, of it.
+    pub lent: f64,
 }
 
 /// What is owed by all fingers together, from tick to tick.
@@ -93,8 +113,10 @@ impl Brake {
 pub struct Toll<const FINGERS: usize> {
     last: [Pressed; FINGERS],
     brakes: [Brake; FINGERS],
-    /// J.
+    /// All that is owed, J.
     debt: f64,
+    /// What is lent of it, J.
+    lent: f64,
     /// Whether the accounts of this tick can be kept.
     is_kept: bool,
 }
@@ -105,6 +127,7 @@ impl<const FINGERS: usize> Default for Toll<FINGERS> {
             last: [Pressed::default(); FINGERS],
             brakes: [Brake::default(); FINGERS],
             debt: 0.0,
+            lent: 0.0,
             is_kept: false,
         }
     }
@@ -112,13 +135,18 @@ impl<const FINGERS: usize> Default for Toll<FINGERS> {
 
 impl<const FINGERS: usize> Toll<FINGERS> {
     /// The brakes on the fingers, N, `dt` seconds after the last tick; `beside` is what the body can
-    /// give back more than then besides what the fingers hold, J, as one that nobody holds may.
-    pub fn take(&mut self, pressed: &[Pressed; FINGERS], beside: f64, dt: f64) -> [DVec3; FINGERS] {
+    /// give back more than then besides what the fingers hold, as one that nobody holds may.
+    pub fn take(
+        &mut self,
+        pressed: &[Pressed; FINGERS],
+        beside: &Given,
+        dt: f64,
+    ) -> [DVec3; FINGERS] {
         let last = std::mem::replace(&mut self.last, *pressed);
         let held: f64 = pressed.iter().map(Pressed::held).sum();
-        if held <= 0.0 {
+        if held.is_nan() || held <= 0.0 {
             self.brakes = [Brake::default(); FINGERS];
-            (self.debt, self.is_kept) = (0.0, false);
+            (self.debt, self.lent, self.is_kept) = (0.0, 0.0, false);
             return [DVec3::ZERO; FINGERS];
         }
         for ((brake, now), last) in self.brakes.iter_mut().zip(pressed).zip(&last) {
@@ -131,7 +159,10 @@ impl<const FINGERS: usize> Toll<FINGERS> {
         }
         self.is_kept = (pressed.iter().zip(&last)).all(|(now, last)| now.presses_as(last));
         if self.is_kept {
-            self.debt += self.made(pressed, &last) + beside * least_share(pressed);
+            let lent: f64 = pressed.iter().map(Pressed::lent).sum();
+            let share = least_share(pressed);
+            self.debt += self.made(pressed, &last) + lent + beside.all * share;
+            self.lent += lent + beside.lent * share;
         }
         self.brake(pressed, held, dt);
         self.brakes.map(|brake| -brake.force())
@@ -151,6 +182,7 @@ impl<const FINGERS: usize> Toll<FINGERS> {
             brake.beside = beside;
         }
         self.debt = self.debt.max(0.0);
+        self.lent = self.lent.min(self.debt);
     }
 
     /// What the energy gained beyond the work of the fingers, but for this tick's brakes, J.
@@ -161,7 +193,7 @@ impl<const FINGERS: usize> Toll<FINGERS> {
             let by_law = if stay {
                 0.0
             } else {
-                now.held() - last.held() - now.work(last, brake.way - now.carried)
+                now.held() - now.lent() - last.held() - now.work(last, brake.way - now.carried)
             };
             by_law - 0.5 * brake.beside.dot(brake.way)
         });
@@ -178,9 +210,11 @@ impl<const FINGERS: usize> Toll<FINGERS> {
                 steepness += brake.paid().max(0.0) / (PAYING * depth);
             }
         }
-        let left = (self.debt - FREE * held).max(0.0) / (1.0 + steepness);
+        self.keep_back(pressed, held);
+        let owed = self.debt - self.lent;
+        let left = (owed - FREE * held).max(0.0) / (1.0 + steepness);
         let [some, all] = BORROWED;
-        let least = ((self.debt / held - some) / (all - some)).clamp(0.0, 1.0);
+        let least = ((owed / held - some) / (all - some)).clamp(0.0, 1.0);
         for (brake, pressed) in self.brakes.iter_mut().zip(pressed) {
             let depth = pressed.depth();
             if depth > 0.0 {
@@ -190,5 +224,24 @@ impl<const FINGERS: usize> Toll<FINGERS> {
                 (brake.size, brake.direction) = (0.0, DVec3::ZERO);
             }
         }
+    }
+
+    /// Keeps back of the pushes on those who go out the share that is lent of what is held.
+    fn keep_back(&mut self, pressed: &[Pressed; FINGERS], held: f64) {
+        // Half by what is kept back of this tick's pushes, half by what was of the last one's.
+        let (mut now, mut before) = (0.0, 0.0);
+        for (brake, pressed) in self.brakes.iter().zip(pressed) {
+            let push = pressed.felt();
+            before += 0.5 * brake.kept_back.dot(brake.way);
+            now -= 0.5 * brake.outwards(push) * push.dot(brake.way);
+        }
+        let left = (self.lent - before) / (1.0 + now.max(0.0) / held);
+        let share = (left / held).clamp(0.0, 1.0);
+        for (brake, pressed) in self.brakes.iter_mut().zip(pressed) {
+            let push = pressed.felt();
+            brake.kept_back = -push * (share * brake.outwards(push));
+        }
+        self.lent = (self.lent - before - share * now).clamp(0.0, held);
+        self.debt -= share * now;
     }
 }

@@ -3,8 +3,9 @@
 use super::Servo;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
-use crate::control::firmness::Firmness;
+use crate::control::lending::Held;
 use crate::control::pressed::Pressed;
+use crate::control::toll::Given;
 use crate::pile::laid::Beside;
 use crate::servo::settings::{Firm, Moment, Settings};
 
@@ -16,29 +17,40 @@ impl Servo {
     pub(super) fn firm(&mut self, settings: &Settings, dt: f64) -> Option<Firm> {
         let is_consistent = settings.feel.mode == ContactMode::Consistent;
         let is_pressed = self.pressed > 0.0;
-        if !(is_consistent && is_pressed) {
-            self.firmness = Firmness::default();
-            return None;
-        }
-        self.firmness = self.firmness.faded(&settings.firmness, dt);
-        if self.firmness.is_linear() {
+        let told = (is_consistent && is_pressed).then_some(&settings.firmness);
+        self.lending.lead(told, dt);
+        let firmness = self.lending.firmness();
+        if firmness.is_linear() {
             return None;
         }
         Some(Firm {
             modulus: settings.young_modulus,
-            share: self.firmness.at(self.pressed),
-            steepness: self.firmness.steepness(self.pressed),
+            share: firmness.at(self.pressed),
+            steepness: firmness.steepness(self.pressed),
         })
     }
 
     /// Keeps what the linear contact holds in the body, and has fingers hold what goes with the firmness; what
-    /// all else holds then, J.
+    /// can be given back more than in the last tick beside what they hold.
     pub(super) fn hold(
         &mut self,
         moment: &Moment<'_>,
         pressed: &mut [Pressed; MAX_FINGERS],
         beside: Beside,
-    ) -> f64 {
+        raised: f64,
+    ) -> Given {
+        let (stored, lent) = self.held_beside(moment, pressed, beside);
+        let all = raised + stored - std::mem::replace(&mut self.stored, raised + stored);
+        Given { all, lent }
+    }
+
+    /// What all else than fingers holds, J, and what of that is lent.
+    fn held_beside(
+        &mut self,
+        moment: &Moment<'_>,
+        pressed: &mut [Pressed; MAX_FINGERS],
+        beside: Beside,
+    ) -> (f64, f64) {
         let fingers: f64 = pressed.iter().map(|finger| finger.energy).sum();
         let energy = beside.own.unwrap_or(fingers + beside.held);
         let held = energy / moment.settings.young_modulus;
@@ -49,21 +61,31 @@ impl Servo {
         } else {
             0.0
         };
+        let firm = moment.firmness.map_or(1.0, |firm| firm.share);
+        let now = Held {
+            energy: energy / firm,
+            unit: held,
+            remembered,
+        };
+        let lent = self.lending.lent(now);
         // What a linear body would hold that is pressed in as far and remembers nothing.
         self.pressed = held * (1.0 + remembered) * (1.0 + remembered);
-        let Some(firm) = moment.firmness else {
-            return beside.held;
-        };
-        // What is held is the integral of the firmness, where the contact told its end.
-        let share = self.firmness.mean(held, remembered) / firm.share;
-        if let Some(own) = beside.own {
-            return beside.held + own * (share - 1.0);
+        if moment.firmness.is_none() {
+            return (beside.held, 0.0);
         }
-        let kept = self.firmness.kept(held, remembered);
+        // What is held is the integral of the firmness, where the contact told its end.
+        let firmness = self.lending.firmness();
+        let share = firmness.mean(held, remembered) / firm;
+        if let Some(own) = beside.own {
+            return (beside.held + own * (share - 1.0), lent);
+        }
+        let kept = firmness.kept(held, remembered);
+        let part = if energy > 0.0 { lent / energy } else { 0.0 };
         for finger in pressed {
             finger.carried *= 1.0 - kept;
+            finger.lent = part * finger.energy;
             (finger.energy, finger.own_energy) = (finger.energy * share, finger.own_energy * share);
         }
-        beside.held * share
+        (beside.held * share, part * beside.held)
     }
 }

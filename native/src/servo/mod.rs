@@ -23,8 +23,8 @@ use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::ground::{Ground, MOST_TOOLS};
 use crate::contact::touch::ContactMode;
-use crate::control::firmness::Firmness;
-use crate::control::toll::Toll;
+use crate::control::lending::Lending;
+use crate::control::toll::{Given, Toll};
 use crate::creep::shown::Remembered;
 use crate::creep::step::Step;
 use crate::device::Fault;
@@ -45,8 +45,6 @@ pub struct Servo {
     bodies: Holder,
     /// The body as one that nobody holds, if it is one.
     prop: Taker<Laid>,
-    /// What that could give back after the last tick, J.
-    stored: f64,
     /// Those that touch it, at least one.
     pub fingers: Vec<Finger>,
     options: Options,
@@ -61,9 +59,11 @@ pub struct Servo {
     borne: Input<Borne>,
     nothing_bears: bool,
     toll: Toll<MAX_FINGERS>,
-    firmness: Firmness,
-    /// What the linear contact held in the last tick, J/Pa.
+    lending: Lending,
+    /// What a linear body would hold that is pressed in as far as this one in the last tick, J/Pa.
     pressed: f64,
+    /// What could be given back after the last tick beside what fingers hold, J.
+    stored: f64,
     tick: u64,
     /// Time of the last tick, s.
     ticked_at: Option<f64>,
@@ -203,12 +203,11 @@ impl Servo {
         let beside = prop.map(|lying| (lying.held(), lying.raised()));
         let (held, raised) = beside.unwrap_or_default();
         let mut pressed = touches.map(|touch| touch.map_or_else(Default::default, |t| t.pressed));
-        let stored = raised + self.hold(moment, &mut pressed, held);
-        let mut given = stored - std::mem::replace(&mut self.stored, stored);
+        let mut given = self.hold(moment, &mut pressed, held, raised);
         if moment.body_replaced {
-            (self.toll, given) = (Toll::default(), 0.0);
+            (self.toll, given) = (Toll::default(), Given::default());
         }
-        let brakes = self.toll.take(&pressed, given, moment.dt);
+        let brakes = self.toll.take(&pressed, &given, moment.dt);
         each(&mut self.fingers, |k, _| {
             Some(touches[k]?.braked(brakes[k]))
         })

@@ -135,12 +135,74 @@ def test_no_closed_path_gives_energy(body, firmness, tool, coupling):
     for loop in random_loops(nodes, mesh.surface_local_triangles, free, 8, 18):
         unit = 0.01 * loop.depth**2
         told = firmness[0] / np.sqrt(unit), firmness[1] / unit, DEEP**2 * unit
-        follow = led(surface, settings, (loop,), (tip,), 3.0 if coupling else None, told)
+        follow = led(surface, settings, (loop,), (tip,), 3.0 if coupling else None, (told,))
         found.append(books((loop,), follow))
     found = [one for one in found if one is not None]
     assert len(found) > 3
     assert max((gain for one in found for gain in one.rounds), default=0.0) <= 1e-3
     assert max(one.path for one in found) <= 1e-3
+
+
+@pytest.mark.parametrize("coupling", [None, COUPLED], ids=["bare", "motors"])
+@pytest.mark.parametrize("tool", [None, sphere(0.006)], ids=["point", "sphere"])
+def test_a_firmness_that_comes_and_goes_gives_no_energy(body, tool, coupling):
+    """Rounds are not judged: the body may be firmer at the end of one than when it began."""
+    mesh, settings = body.mesh, Settings(MODULUS, coupling=coupling)
+    free = ~np.isin(mesh.surface_nodes, body.fixed)
+    surface = native_body(body, whole=True)
+    tip = Tip() if tool is None else tip_of(body, surface, tool)
+    gains = []
+    for loop in random_loops(
+        mesh.nodes[mesh.surface_nodes], mesh.surface_local_triangles, free, 8, 29
+    ):
+        unit = 0.01 * loop.depth**2
+        told = [
+            (root / np.sqrt(unit), square / unit, DEEP**2 * unit)
+            for root, square in ((0.0, 0.0), FIRMER, SOFTER, THIN)
+        ]
+        follow = led(surface, settings, (loop,), (tip,), 3.0 if coupling else None, told)
+        found = books((loop,), follow)
+        if found is not None:
+            gains.append(found.path)
+    assert len(gains) > 3
+    assert max(gains) <= 1e-3
+
+
+@pytest.mark.parametrize("ticks", [100, 1000])
+@pytest.mark.parametrize("firmness", [FIRMER, THIN])
+@pytest.mark.parametrize("slide", [0.0, 0.001])
+def test_one_that_comes_late_is_felt_on_the_way_in_and_kept_back_on_the_way_out(
+    whole, firmness, ticks, slide
+):
+    """Found where a finger is deep: then no force is above that of one who knew of it from the
+    beginning, and none falls and rises again.
+    """
+    fingers = fingers_on(whole, down(-0.001))
+    unit = held_by(whole, 0.004)
+
+    def way(begin, end):
+        depths = np.linspace(begin, end, ticks)
+        places = np.concatenate([down(depth) for depth in depths])
+        places[:, 0] += slide * depths / 0.004
+        return places[:, None]
+
+    parts = [way(-0.001, 0.004)]
+    forces = [fingers.follow(parts[0])[0][:, 0]]
+    root, square = firmness
+    fingers.set_firmness(root / np.sqrt(unit), square / unit, DEEP**2 * unit)
+    for begin, end in ((0.004, 0.0041), (0.0041, 0.006), (0.006, -0.001)):
+        parts.append(way(begin, end))
+        forces.append(fingers.follow(parts[-1])[0][:, 0])
+    last = np.linalg.norm(forces[2], axis=1)
+    early = fingers_on(whole, down(-0.001), firmness)
+    early.follow(np.tile(way(0.0005, 0.0005)[0], (FADED, 1, 1)))
+    law = np.linalg.norm(early.follow(way(0.0005, 0.006))[0][:, 0], axis=1).max()
+    assert last.max() <= 1.02 * law
+    out = np.linalg.norm(forces[3], axis=1)
+    assert np.diff(out).max() <= 0.005 * law
+    path, force = np.concatenate(parts)[:, 0], np.concatenate(forces)
+    work = np.einsum("tx,tx->", 0.5 * (force[1:] + force[:-1]), np.diff(path, axis=0))
+    assert work <= 1e-3 * law * 0.003
 
 
 def test_a_firmness_that_is_no_number_is_refused(whole):

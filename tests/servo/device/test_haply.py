@@ -254,7 +254,7 @@ def test_the_command_touches_with_a_2diy(baked_file, capsys):
     # The command puts the workspace's middle on the middle of the top.
     hand = SimulatedOptions(by=(0.0, -0.075, 0.0), approach=0.2, period=1.0)
     with SimulatedDevice(hand, haply=DEFAULT_MODEL) as device:
-        line = ["servo", baked_file, "--haply", device.port, "--seconds", "1.5", "--json"]
+        line = ["servo", baked_file, "--haply", device.port, "--seconds", "2.5", "--json"]
         assert main(line) == 0
         assert device.report()["torques"] == [0.0, 0.0]
     report = json.loads(capsys.readouterr().out)

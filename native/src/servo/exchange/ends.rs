@@ -9,7 +9,7 @@ use super::bodies::{Hand, exchange};
 use super::rings::{Giver, rings};
 use crate::body::surface::Body;
 use crate::contact::cones::MAX_FINGERS;
-use crate::control::firmness::Firmness;
+use crate::control::lending::Lending;
 use crate::control::toll::Toll;
 use crate::creep::shown::Remembered;
 use crate::device::Device;
@@ -78,7 +78,6 @@ impl Servo {
             fingers: fingers.collect(),
             bodies: holder,
             prop,
-            stored: 0.0,
             options,
             settings: settings_out,
             snapshots: snapshots_in,
@@ -90,8 +89,9 @@ impl Servo {
             borne: borne_in,
             nothing_bears: true,
             toll: Toll::default(),
-            firmness: Firmness::default(),
+            lending: Lending::default(),
             pressed: 0.0,
+            stored: 0.0,
             tick: 0,
             ticked_at: None,
             samples_lost: 0,
