@@ -16,6 +16,7 @@ from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..rest.support import Floor, Support, as_tool
 from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike
+from ..shape.rotation_strain.firm_places import FirmPlaces
 from ..shape.rotation_strain.firmness import Firmness
 from ..shape.shapes import Shape, pressed_by
 
@@ -54,8 +55,8 @@ class Firming:
 
     Between calls of :meth:`follow` a thread may be at work.
 
-    While fingers move, firmness is that of a press somewhat deeper; once they are at rest that of
-    the very press, as of one without a clock.
+    While fingers move, firmness is that of a press somewhat deeper, or of the deepest that was
+    looked at there; once they are at rest that of the very press, as of one without a clock.
     """
 
     servo: Firmed
@@ -70,6 +71,7 @@ class Firming:
     _told: Firmness = LINEAR
     _shape: Shape | None = None
     _looked: _Look = field(default_factory=_Look)
+    _places: FirmPlaces = field(default_factory=FirmPlaces)
     _before: tuple[FingerLoad, ...] = ()
 
     @property
@@ -87,6 +89,8 @@ class Firming:
         """
         loads = self.pressing(snapshot)
         is_other, self._shape = shape is not self._shape, shape
+        if is_other:
+            self._places.forget()
         if not loads or is_other:
             self._looked = _Look()
             self._tell(LINEAR)
@@ -96,11 +100,17 @@ class Firming:
             found, self._finding = self._finding.result(), None
             # What another shape said, or of another touch, is looked for anew.
             if self._looked.loads:
+                self._places.remember(self._looked.loads, found)
                 self._tell(found)
         rests, self._before = alike(loads, self._before, AT_REST), loads
         ahead = 1.0 if rests else self._ahead(loads)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
             return
+        if not rests:
+            known = self._places.at(loads)
+            if known.reach > ahead * ahead * snapshot.held:
+                self._tell(known)
+                return
         self._looked = _Look(loads, ahead)
         self._finding = self._worker.submit(
             _firmness, shape, self._looked, young_modulus, snapshot.held

@@ -17,7 +17,7 @@ from palpate.core.servo.firming import Firming
 from palpate.core.servo.session import Pointer, native_body, native_tool, servo_on
 from palpate.core.servo.settings import Settings
 from palpate.core.shape.felt import felt
-from palpate.core.shape.rotation_strain.firmness import LINEAR
+from palpate.core.shape.rotation_strain.firmness import Firmness, Pressed
 from palpate.core.shape.shapes import LinearShape, shape
 
 ABOVE, DEEP, DEPTH = (0.025, 0.025, 0.051), (0.025, 0.025, 0.038), 0.012
@@ -105,23 +105,59 @@ class AtOnce:
         pass
 
 
-def test_it_looks_as_much_deeper_as_fingers_have_gone_since_the_last_look(cube_body, monkeypatch):
-    looks = []
+@pytest.fixture
+def looks(monkeypatch):
+    """How many times as deep as the press each look was, of a body that is half as firm again."""
+    made = []
 
     def look(shape, loads, young_modulus, ahead):
-        looks.append(ahead)
-        return LINEAR
+        made.append(ahead)
+        return Pressed(Firmness(root=0.5 / ahead, reach=ahead**2), 1.0, None)
 
     monkeypatch.setattr(firming_module, "pressed_by", look)
+    return made
+
+
+@pytest.fixture
+def pressed_to(cube_body):
+    """Leads a point to depths, m, by a place of the cube's top, and follows it at each of them; the
+    firmness in the end.
+    """
     native = native_body(cube_body, whole=True)
-    depths = np.array([-0.001, 0.001, 0.002, 0.0025, 0.0026, 0.002, 0.006])
-    places = np.array([0.025, 0.025, 0.05]) - depths[:, None] * np.eye(3)[2]
-    servo = SteppedFingers(native, places[:1], Settings(cube_body.young_modulus))
-    firming, made = Firming(servo, cube_body, _worker=AtOnce()), LinearShape(cube_body)
-    for place in places:
-        servo.follow(np.tile(place, (3, 1, 1)))
-        firming.follow(servo.snapshot(), made, cube_body.young_modulus)
-    assert looks == pytest.approx([1.2, 1.5, 1.2, 1.2, 1.2, 1.6], rel=1e-3)
+    above = np.array([[0.025, 0.025, 0.06]])
+    servo = SteppedFingers(native, above, Settings(cube_body.young_modulus))
+    firming = Firming(servo, cube_body, _worker=AtOnce())
+    linear = LinearShape(cube_body)
+
+    def press(*depths, at=(0.025, 0.025), shape=linear):
+        for depth in depths:
+            servo.follow(np.tile([*at, 0.05 - depth], (500, 1, 1)))
+            firming.follow(servo.snapshot(), shape, cube_body.young_modulus)
+        return servo.snapshot().firmness
+
+    return press
+
+
+def test_it_looks_as_much_deeper_as_fingers_have_gone_since_the_last_look(looks, pressed_to):
+    pressed_to(-0.001, 0.001, 0.002, 0.003, 0.0031, 0.006)
+    assert looks == pytest.approx([1.2, 1.5, 4 / 3, 1.5])
+
+
+def test_what_was_found_at_a_place_is_known_when_a_finger_comes_back(cube_body, looks, pressed_to):
+    pressed_to(0.001, 0.002, 0.003, 0.004)
+    firm = pressed_to(0.004, 0.004)
+    assert looks[-1] == 1.0
+    known = len(looks)
+    again = pressed_to(-0.001, 0.001, 0.002, 0.004)
+    assert len(looks) == known
+    assert again == pytest.approx(firm, rel=0.1)
+    assert again > 1.3
+    pressed_to(0.006)
+    assert len(looks) == known + 1
+    pressed_to(-0.001, 0.002, at=(0.04, 0.012))
+    assert len(looks) == known + 2
+    pressed_to(-0.001, 0.002, shape=LinearShape(cube_body))
+    assert len(looks) == known + 3
 
 
 # Tools, and how deep they go: a plate's edges come to rest in one way where they are in by no more

@@ -82,14 +82,14 @@ def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: floa
     return len(loads) == len(others) and all(
         one.sticks == other.sticks
         and np.array_equal(one.nodes, other.nodes)
-        and _meet_alike(one.by, other.by)
+        and meet_alike(one.by, other.by)
         and abs(one.firmness - other.firmness) <= share * one.firmness
         and np.abs(one.forces - other.forces).sum() <= share * np.abs(one.forces).sum()
         for one, other in zip(loads, others, strict=True)
     )
 
 
-def _meet_alike(one: Setting | None, other: Setting | None) -> bool:
+def meet_alike(one: Setting | None, other: Setting | None) -> bool:
     """Whether a tool meets a body as another does; the forces tell whether it does so there."""
     if one is None or other is None:
         return one is other
