@@ -11,6 +11,12 @@ const WAY_PER_SPACING: f64 = 0.25;
 const AT_REST: f64 = 1e-8;
 /// In so many ticks one after the other.
 const QUIET_TICKS: usize = 3;
+/// What hardly moves and does not come nearer to rest rests, too, as what sticks and slips does on rough floors:
+/// shares of the same, and of the size of what is off, for as many ticks, in which changes do not become slower.
+const HARDLY_LEFT: f64 = 3e-7;
+const HARDLY_CHANGED: f64 = 1e-5;
+const HARDLY_OFF: f64 = 1e-6;
+const WAVERING_TICKS: usize = 8;
 /// Ticks that it is given, and how many times its size it may go meanwhile.
 const MOST_TICKS: usize = 20_000;
 const MOST_SIZES: f64 = 20.0;
@@ -63,6 +69,9 @@ pub trait Settles {
 pub struct Settling {
     ticks: usize,
     quiet: usize,
+    /// Ticks in which it hardly moved, and how fast forces changed before them, as a share of the largest, 1/s.
+    wavering: usize,
+    rate: f64,
     /// Metres.
     gone: f64,
     /// Seconds.
@@ -78,6 +87,8 @@ impl Settling {
         Self {
             ticks: 0,
             quiet: 0,
+            wavering: 0,
+            rate: 0.0,
             gone: 0.0,
             longest,
             dt: SHORTEST * longest,
@@ -95,11 +106,13 @@ impl Settling {
             let now = settles.forces();
             let largest = largest(&now).max(settles.weight());
             let left = share_of(settles.left(), largest);
-            let stays = change(&self.before, &now) <= AT_REST * largest;
-            let is_quiet = settles.is_led(AT_GOAL) && left <= AT_REST && stays;
+            let changed = share_of(change(&self.before, &now), largest);
+            let is_quiet = settles.is_led(AT_GOAL) && left <= AT_REST && changed <= AT_REST;
             self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
             self.before = now;
-            if self.quiet == QUIET_TICKS {
+            let hardly_moves =
+                left <= HARDLY_LEFT && changed <= HARDLY_CHANGED && settles.is_led(HARDLY_OFF);
+            if self.quiet == QUIET_TICKS || self.wavers(hardly_moves, changed / self.dt) {
                 return Ok(true);
             }
             let speed = way / self.dt;
@@ -116,6 +129,24 @@ impl Settling {
             self.dt = (self.dt * most).clamp(SHORTEST * longest, longest);
         }
         Ok(false)
+    }
+
+    /// Whether it has hardly moved for long and does not come to rest more nearly; `rate`: how fast its forces
+    /// change.
+    fn wavers(&mut self, hardly_moves: bool, rate: f64) -> bool {
+        if !hardly_moves {
+            self.wavering = 0;
+            return false;
+        }
+        if self.wavering == 0 {
+            self.rate = rate;
+        }
+        self.wavering += 1;
+        if self.wavering <= WAVERING_TICKS {
+            return false;
+        }
+        self.wavering = 0;
+        rate >= self.rate
     }
 }
 
@@ -145,4 +176,66 @@ fn share_of(part: f64, whole: f64) -> f64 {
 /// Whether forces have stayed as they were, or there are none.
 pub(super) fn have_stayed(before: &[DVec3], now: &[DVec3]) -> bool {
     change(before, now) <= AT_REST * largest(now)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A weight of 1 N on a floor that pushes by a little else in each tick.
+    struct Pushed<F: Fn(f64) -> f64> {
+        tick: f64,
+        beside: F,
+    }
+
+    impl<F: Fn(f64) -> f64> Settles for Pushed<F> {
+        fn go(&mut self, _dt: f64) -> Result<f64, Restless> {
+            self.tick += 1.0;
+            Ok(1e-9)
+        }
+        fn longest_tick(&self) -> f64 {
+            1.0
+        }
+        fn forces(&self) -> Vec<DVec3> {
+            vec![DVec3::Z * (1.0 + (self.beside)(self.tick))]
+        }
+        fn weight(&self) -> f64 {
+            1.0
+        }
+        fn left(&self) -> f64 {
+            (self.beside)(self.tick).abs()
+        }
+        fn is_led(&self, share: f64) -> bool {
+            share >= 1e-7
+        }
+        fn spacing(&self) -> f64 {
+            1e-3
+        }
+        fn size(&self) -> f64 {
+            0.1
+        }
+        fn since(&self) -> f64 {
+            self.tick
+        }
+    }
+
+    fn ticks(beside: impl Fn(f64) -> f64) -> Option<f64> {
+        let mut pushed = Pushed { tick: 0.0, beside };
+        let rests = Settling::of(&pushed).go_on(&mut pushed, 1000);
+        rests.ok()?.then_some(pushed.tick)
+    }
+
+    #[test]
+    fn what_sticks_and_slips_for_ever_so_little_rests() {
+        let wavers = |tick: f64| 1e-7 * (0.7 * tick).sin();
+        assert!(ticks(wavers).is_some_and(|ticks| ticks < 100.0));
+        let grows = |tick: f64| 1e-8 * 1.016_f64.powf(tick);
+        assert!(ticks(grows).is_some_and(|ticks| ticks < 100.0));
+    }
+
+    #[test]
+    fn what_moves_farther_or_comes_to_rest_ever_more_slowly_goes_on() {
+        assert_eq!(ticks(|tick| 1e-4 * (0.7 * tick).sin()), None);
+        assert_eq!(ticks(|tick| 2e-7 * 0.999_f64.powf(tick)), None);
+    }
 }
