@@ -10,9 +10,10 @@ as sent, by the trapezoidal rule, of all fingers, as a share of F d / 2 (largest
 press). Columns: rounds that touched throughout and ended as they began, the share of them that
 gave more than 0.1 and 1 %, the most that one gave, and the mean loss of the others; the same of
 whole paths, from air to air. *Motors* have the coupling of a device, *cut off* a force limit of 0.6
-of what is asked, *far* of 0.03, *two* are beside each other, led together. Tools, which take some
-hundred times as long as points, go a fifth as many loops. ``paper`` is as published, without a
-claim. Exit status 1 where another one gave more than 0.1 %.
+of what is asked, *far* of 0.03, *two* are beside each other, led together, and *late* are told
+another firmness of the body every hundred ticks (at that depth 0.67 to 7 times a linear one's).
+Tools, which take some hundred times as long as points, go a fifth as many loops. ``paper`` is as
+published, without a claim. Exit status 1 where another one gave more than 0.1 %.
 """
 
 from __future__ import annotations
@@ -58,13 +59,21 @@ class Way:
     tips : of each finger, ``point`` or one of `tools_of`.
     motors : newton, what they bear; None without motors.
     cut_off : the force limit, as a share of the most that is asked for; None without one.
+    is_late : the body becomes firmer and softer on the way.
     """
 
     settings: Settings = field(default_factory=lambda: Settings(YOUNG_MODULUS))
     tips: tuple[str, ...] = ("point",)
     motors: float | None = None
     cut_off: float | None = None
+    is_late: bool = False
 
+
+# Firmness of a body, one after the other: 1 + a s + b s^2, s the depth over that of the press, to
+# twice that.
+LINEAR = ((0.0, 0.0, 0.0),)
+LATE = ((0.0, 0.0), (0.25, 0.25), (-1.0 / 3.0, 0.0), (2.0, 4.0))
+REACH = 2.0
 
 COUPLED = Settings(YOUNG_MODULUS, coupling=Coupling(800.0, 4.0, passivity_control=True))
 WAYS = {
@@ -84,6 +93,10 @@ WAYS = {
     "tip, far": Way(tips=("fingertip",), cut_off=FAR_CUT_OFF),
     "two tips": Way(tips=("fingertip", "fingertip")),
     "tip and point": Way(tips=("fingertip", "point")),
+    "late": Way(is_late=True),
+    "late, motors": Way(COUPLED, motors=3.0, is_late=True),
+    "two, late": Way(tips=("point", "point"), is_late=True),
+    "tip, late": Way(tips=("fingertip",), is_late=True),
 }
 
 
@@ -113,7 +126,24 @@ def books_of(native: Body, way: Way, loops: Sequence[Loop], tips: Sequence[Tip])
         path = np.stack([loop.path for loop in loops], axis=1)
         asked, _ = led(native, way.settings, loops, tips)(path)
         motors = way.cut_off * float(np.linalg.norm(asked, axis=2).max()) or None
-    return books(loops, led(native, way.settings, loops, tips, motors))
+    firmnesses = late_on(native, loops, tips) if way.is_late else LINEAR
+    if firmnesses is None:
+        return None
+    return books(loops, led(native, way.settings, loops, tips, motors, firmnesses))
+
+
+def late_on(
+    native: Body, loops: Sequence[Loop], tips: Sequence[Tip]
+) -> Sequence[tuple[float, float, float]] | None:
+    """:data:`LATE` as it is told of a press as deep as the loops; None where they press nothing."""
+    forces, _ = led(native, Settings(YOUNG_MODULUS), loops, tips)(
+        np.stack([loop.press for loop in loops], axis=1)
+    )
+    pressed = np.linalg.norm(forces[-1], axis=1) @ [loop.depth for loop in loops]
+    held = 0.5 * float(pressed) / YOUNG_MODULUS
+    if held == 0.0:
+        return None
+    return [(root / np.sqrt(held), whole / held, REACH**2 * held) for root, whole in LATE]
 
 
 def of_body(body: SoftBody, way: Way, count: int, seed: int) -> list[Books]:

@@ -16,12 +16,12 @@ from palpate.core.contact.tool.native_tool import NativeTip, native_tool
 from palpate.core.contact.tool.tools import Tool
 from palpate.core.servo.settings import Settings
 
-from .energy_loops import Follow, Loop
+from .energy_loops import ROUND, Follow, Loop
 
 Vectors = NDArray[np.float64]
 
-# Ticks after which another firmness comes.
-CHANGED = 150
+# Ticks after which another firmness comes: of four each comes as often in every round.
+CHANGED = ROUND // 16
 
 
 @dataclass(frozen=True)
