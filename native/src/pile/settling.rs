@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::contact::{Against, Contact};
 use super::obstacle::Obstacle;
 use super::piled::Pile;
+use crate::rest::placement::Placement;
 use crate::rest::resting::Restless;
 use crate::rest::settling::Settles;
 
@@ -93,5 +94,14 @@ impl Settles for Pile {
 
     fn since(&self) -> f64 {
         self.time()
+    }
+
+    fn placements(&self) -> Vec<Placement> {
+        self.members.iter().map(|member| member.placement).collect()
+    }
+
+    fn mobility(&self) -> f64 {
+        let free = self.members.iter().filter_map(|member| member.free);
+        free.fold(0.0, |most, free| most.max(free.drag_time / free.mass))
     }
 }

@@ -12,3 +12,4 @@ pub mod placement;
 pub mod prop;
 pub mod resting;
 pub mod settling;
+mod to_and_fro;

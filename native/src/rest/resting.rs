@@ -231,4 +231,12 @@ impl Settles for Resting {
     fn since(&self) -> f64 {
         self.time
     }
+
+    fn placements(&self) -> Vec<Placement> {
+        vec![self.prop.placement]
+    }
+
+    fn mobility(&self) -> f64 {
+        self.prop.free.drag_time / self.prop.free.mass
+    }
 }

@@ -2,6 +2,9 @@
 
 use glam::DVec3;
 
+use super::placement::Placement;
+use super::to_and_fro::{Now, Staying, Wavering};
+
 /// The first tick is as long as this share of the longest one, and so is the shortest.
 pub(super) const SHORTEST: f64 = 1e-3;
 /// On the way to rest it goes by this share of the distance between contact points in a tick, about.
@@ -11,12 +14,13 @@ const WAY_PER_SPACING: f64 = 0.25;
 const AT_REST: f64 = 1e-8;
 /// In so many ticks one after the other.
 const QUIET_TICKS: usize = 3;
-/// What hardly moves and does not come nearer to rest rests, too, as what sticks and slips does on rough floors:
-/// shares of the same, and of the size of what is off, for as many ticks, in which changes do not become slower.
+/// It hardly moves where no more is left than this, forces change by no more than that, and what is led is off by
+/// no more than that, as shares of the same.
 const HARDLY_LEFT: f64 = 3e-7;
 const HARDLY_CHANGED: f64 = 1e-5;
 const HARDLY_OFF: f64 = 1e-6;
-const WAVERING_TICKS: usize = 8;
+/// What goes to and fro is so far from what is led at most.
+const FARTHEST: f64 = 1e-4;
 /// Ticks that it is given, and how many times its size it may go meanwhile.
 const MOST_TICKS: usize = 20_000;
 const MOST_SIZES: f64 = 20.0;
@@ -62,6 +66,10 @@ pub trait Settles {
     fn size(&self) -> f64;
     /// Since the beginning, s.
     fn since(&self) -> f64;
+    /// Of each body.
+    fn placements(&self) -> Vec<Placement>;
+    /// How fast the lightest body goes under a force, m/s for each newton.
+    fn mobility(&self) -> f64;
 }
 
 /// How far something has come on its way to rest.
@@ -69,15 +77,14 @@ pub trait Settles {
 pub struct Settling {
     ticks: usize,
     quiet: usize,
-    /// Ticks in which it hardly moved, and how fast forces changed before them, as a share of the largest, 1/s.
-    wavering: usize,
-    rate: f64,
     /// Metres.
     gone: f64,
     /// Seconds.
     longest: f64,
     dt: f64,
     before: Vec<DVec3>,
+    wavering: Wavering,
+    staying: Staying,
 }
 
 impl Settling {
@@ -87,12 +94,12 @@ impl Settling {
         Self {
             ticks: 0,
             quiet: 0,
-            wavering: 0,
-            rate: 0.0,
             gone: 0.0,
             longest,
             dt: SHORTEST * longest,
             before: settles.forces(),
+            wavering: Wavering::default(),
+            staying: Staying::default(),
         }
     }
 
@@ -112,7 +119,10 @@ impl Settling {
             self.before = now;
             let hardly_moves =
                 left <= HARDLY_LEFT && changed <= HARDLY_CHANGED && settles.is_led(HARDLY_OFF);
-            if self.quiet == QUIET_TICKS || self.wavers(hardly_moves, changed / self.dt) {
+            if self.quiet == QUIET_TICKS
+                || self.wavering.is_over(hardly_moves, changed / self.dt)
+                || self.stays(settles, largest)
+            {
                 return Ok(true);
             }
             let speed = way / self.dt;
@@ -131,22 +141,16 @@ impl Settling {
         Ok(false)
     }
 
-    /// Whether it has hardly moved for long and does not come to rest more nearly; `rate`: how fast its forces
-    /// change.
-    fn wavers(&mut self, hardly_moves: bool, rate: f64) -> bool {
-        if !hardly_moves {
-            self.wavering = 0;
-            return false;
-        }
-        if self.wavering == 0 {
-            self.rate = rate;
-        }
-        self.wavering += 1;
-        if self.wavering <= WAVERING_TICKS {
-            return false;
-        }
-        self.wavering = 0;
-        rate >= self.rate
+    /// Whether it has long gone to and fro about one place, under forces of `largest` N.
+    fn stays(&mut self, settles: &impl Settles, largest: f64) -> bool {
+        let now = settles.is_led(FARTHEST).then(|| Now {
+            tick: self.ticks,
+            since: settles.since(),
+            at: settles.placements(),
+            size: settles.size(),
+            speed: settles.mobility() * largest,
+        });
+        self.staying.is_over(now)
     }
 }
 
@@ -186,11 +190,15 @@ mod tests {
     struct Pushed<F: Fn(f64) -> f64> {
         tick: f64,
         beside: F,
+        /// How far a newton takes it in a tick, m.
+        mobility: f64,
+        gone: f64,
     }
 
     impl<F: Fn(f64) -> f64> Settles for Pushed<F> {
         fn go(&mut self, _dt: f64) -> Result<f64, Restless> {
             self.tick += 1.0;
+            self.gone += self.mobility * (self.beside)(self.tick);
             Ok(1e-9)
         }
         fn longest_tick(&self) -> f64 {
@@ -217,10 +225,24 @@ mod tests {
         fn since(&self) -> f64 {
             self.tick
         }
+        fn placements(&self) -> Vec<Placement> {
+            vec![Placement {
+                position: DVec3::X * self.gone,
+                ..Placement::default()
+            }]
+        }
+        fn mobility(&self) -> f64 {
+            self.mobility
+        }
     }
 
     fn ticks(beside: impl Fn(f64) -> f64) -> Option<f64> {
-        let mut pushed = Pushed { tick: 0.0, beside };
+        let mut pushed = Pushed {
+            tick: 0.0,
+            beside,
+            mobility: 0.01,
+            gone: 0.0,
+        };
         let rests = Settling::of(&pushed).go_on(&mut pushed, 1000);
         rests.ok()?.then_some(pushed.tick)
     }
@@ -234,8 +256,15 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_farther_or_comes_to_rest_ever_more_slowly_goes_on() {
-        assert_eq!(ticks(|tick| 1e-4 * (0.7 * tick).sin()), None);
-        assert_eq!(ticks(|tick| 2e-7 * 0.999_f64.powf(tick)), None);
+    fn what_goes_to_and_fro_about_one_place_rests_there_after_a_while() {
+        let rests = ticks(|tick| 1e-4 * (0.7 * tick).sin());
+        assert!(rests.is_some_and(|ticks| ticks > 60.0 && ticks < 200.0));
+    }
+
+    #[test]
+    fn what_goes_on_or_comes_to_rest_ever_more_slowly_goes_on() {
+        assert_eq!(ticks(|_| 1e-4), None);
+        assert_eq!(ticks(|tick| 1e-4 * (1.0 + (0.7 * tick).sin())), None);
+        assert_eq!(ticks(|tick| 1e-3 * 0.998_f64.powf(tick)), None);
     }
 }
