@@ -15,7 +15,7 @@ from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..rest.support import Floor, Support, as_tool
-from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike
+from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike, totals
 from ..shape.rotation_strain.firm_places import FirmPlaces
 from ..shape.rotation_strain.firmness import Firmness
 from ..shape.shapes import Shape, pressed_by
@@ -199,7 +199,7 @@ class Firming:
 
 def _pushed(loads: Sequence[FingerLoad]) -> float:
     """How strongly all of them press, N."""
-    return float(sum(np.linalg.norm(load.forces.sum(axis=0)) for load in loads))
+    return float(np.linalg.norm(totals(loads), axis=1).sum())
 
 
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:

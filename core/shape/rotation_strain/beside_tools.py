@@ -19,7 +19,7 @@ from ...contact.tool.pose import Pose
 from ...contact.touches import ToolTouch
 from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad, Setting, on_free_nodes
+from .finger_load import FingerLoad, Setting, on_free_nodes, totals
 from .kept_out import Kept, kept_out, places_of
 from .lying import Loose
 from .relaxation import Relaxation
@@ -104,14 +104,9 @@ def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float) -> Beside | 
     trust = min((kept.pressing - FEW_PLACES) / (MANY_PLACES - FEW_PLACES), 1.0)
     if trust <= 0.0:
         return None
-    along = _totals(loads)
+    along = totals(loads)
     share = float((kept.forces * along).sum()) / float((along * along).sum())
     return Beside(share, trust, energy, kept)
-
-
-def _totals(loads: Sequence[FingerLoad]) -> Array:
-    """The force (k, 3) of each."""
-    return np.array([one.forces.sum(axis=0) for one in loads])
 
 
 def _withdrawn(loads: Sequence[FingerLoad], depth: float) -> list[FingerLoad] | None:

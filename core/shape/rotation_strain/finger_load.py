@@ -75,6 +75,11 @@ def on_free_nodes(solid: FreeSolid, loads: Sequence[FingerLoad]) -> Array:
     return solid.on_free_nodes(nodes, np.concatenate([load.forces for load in loads]))
 
 
+def totals(loads: Sequence[FingerLoad]) -> Array:
+    """The force (k, 3) of each, N."""
+    return np.array([load.forces.sum(axis=0) for load in loads]).reshape(-1, 3)
+
+
 def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: float = 0.0) -> bool:
     """Whether the same fingers press on the same nodes, by forces that differ by no more than a
     share of all of them.

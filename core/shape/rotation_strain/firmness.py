@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
 from .beside_tools import beside_tools, between_tools
-from .finger_load import FingerLoad, on_free_nodes
+from .finger_load import FingerLoad, on_free_nodes, totals
 from .linear_press import LinearPress, farthest_of
 from .relaxation import Relaxation, Rest
 
@@ -175,7 +175,7 @@ class FirmBody:
         if found is None:
             return led
         # What its weight alone presses answers with that, however firm it is.
-        sums = np.array([load.forces.sum(axis=0) for load in loads])
+        sums = totals(loads)
         weight = float(np.linalg.norm(sums.sum(axis=0)) / np.linalg.norm(sums, axis=1).sum())
         share = (1.0 - weight) * found.share + weight * known.at(energy)
         half = HALF * HALF * energy

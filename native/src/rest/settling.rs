@@ -20,7 +20,7 @@ const HARDLY_LEFT: f64 = 3e-7;
 const HARDLY_CHANGED: f64 = 1e-5;
 const HARDLY_OFF: f64 = 1e-6;
 /// What goes to and fro is so far from what is led at most.
-const FARTHEST: f64 = 1e-4;
+const NEAR_GOAL: f64 = 1e-4;
 /// Ticks that it is given, and how many times its size it may go meanwhile.
 const MOST_TICKS: usize = 20_000;
 const MOST_SIZES: f64 = 20.0;
@@ -143,7 +143,7 @@ impl Settling {
 
     /// Whether it has long gone to and fro about one place, under forces of `largest` N.
     fn stays(&mut self, settles: &impl Settles, largest: f64) -> bool {
-        let now = settles.is_led(FARTHEST).then(|| Now {
+        let now = settles.is_led(NEAR_GOAL).then(|| Now {
             tick: self.ticks,
             since: settles.since(),
             at: settles.placements(),
