@@ -17,7 +17,7 @@ from ..contact.tool.tools import Tool
 from ..rest.support import Floor, Support, as_tool
 from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike, totals
 from ..shape.rotation_strain.firm_places import FirmPlaces
-from ..shape.rotation_strain.firmness import Firmness
+from ..shape.rotation_strain.pressed import Firmness
 from ..shape.shapes import Shape, pressed_by
 
 # It is looked for a little deeper than fingers are that move, and as much deeper as they have gone

@@ -13,7 +13,7 @@ from ..body.soft_body import SoftBody
 from ..contact.touches import PointTouch, ToolTouch
 from ..grip.cells import cells_of
 from .rotation_strain.finger_load import FingerLoad, Setting
-from .rotation_strain.firmness import Firmness
+from .rotation_strain.pressed import Firmness
 from .shapes import Shape, firmness_of
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..body.soft_body import SoftBody
 from .meeting import settled
 from .rotation_strain.finger_load import FingerLoad, alike
-from .rotation_strain.firmness import Firmness
+from .rotation_strain.pressed import Firmness
 from .shapes import Shape, pressed_by
 
 Array = NDArray[np.float64]

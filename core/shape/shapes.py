@@ -19,7 +19,7 @@ from ..errors import PalpateError
 from ..sentence import Sentence
 from .paper.paper_shape import PaperShape
 from .rotation_strain.finger_load import FingerLoad
-from .rotation_strain.firmness import LINEAR, Firmness, Pressed
+from .rotation_strain.pressed import LINEAR, Firmness, Pressed
 from .rotation_strain.rotation_strain_shape import MOST_FELT, RotationStrainShape
 
 ShapeName: TypeAlias = Literal["linear", "paper", "real"]

@@ -122,6 +122,7 @@ class BakeSession:
             places: list[Path] = []
 
             def place_for(found: SoftBody) -> Path:
+                kept_body.let_go()
                 places.append(body_store.place_for(thing, found.key))
                 return places[0]
 

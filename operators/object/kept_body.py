@@ -11,7 +11,6 @@ from functools import lru_cache
 import bpy
 
 from ...core.body.soft_body import SoftBody
-from ...core.compliance.mapped import MappedCompliance
 from ..scene import drawn_surface
 from . import body_store, hung_map
 
@@ -42,9 +41,14 @@ def keep(thing: bpy.types.Object, body: SoftBody) -> None:
     """Keep the body that was just read from an object's file, or written there."""
     global _kept  # noqa: PLW0603  one cached body
     stamp = _stamp(thing)
-    # A mapped table keeps its file open, which some systems then cannot replace.
-    in_file = isinstance(body.compliance, MappedCompliance)
-    _kept = None if stamp is None or in_file else (stamp, body)
+    _kept = None if stamp is None else (stamp, body)
+
+
+def let_go() -> None:
+    """Keep no body: a mapped table keeps its file open, which some systems then cannot replace."""
+    global _kept  # noqa: PLW0603  see keep
+    _kept = None
+    of_law.cache_clear()
 
 
 def keep_unsaved(body: SoftBody) -> None:
@@ -66,8 +70,7 @@ def is_unsaved(thing: bpy.types.Object) -> bool:
 
 def forget() -> None:
     """Free the memory."""
-    global _kept  # noqa: PLW0603  see keep
-    _kept = None
+    let_go()
     drop_unsaved()
     hung_map.forget()
     drawn_surface.forget()

@@ -17,7 +17,7 @@ from palpate.core.servo.firming import Firming
 from palpate.core.servo.session import Pointer, native_body, native_tool, servo_on
 from palpate.core.servo.settings import Settings
 from palpate.core.shape.felt import felt
-from palpate.core.shape.rotation_strain.firmness import Firmness, Pressed
+from palpate.core.shape.rotation_strain.pressed import Firmness, Pressed
 from palpate.core.shape.shapes import LinearShape, shape
 
 ABOVE, DEEP, DEPTH = (0.025, 0.025, 0.051), (0.025, 0.025, 0.038), 0.012

@@ -15,6 +15,9 @@ from ..solid.free_solid import FreeSolid
 
 Array = NDArray[np.float64]
 
+# Share of the fewer nodes that presses at one place have in common.
+SHARED = 0.5
+
 
 @dataclass(frozen=True, eq=False)
 class Footing:
@@ -92,6 +95,18 @@ def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: floa
         and np.abs(one.forces - other.forces).sum() <= share * np.abs(one.forces).sum()
         for one, other in zip(loads, others, strict=True)
     )
+
+
+def are_near(loads: Sequence[FingerLoad], others: Sequence[FingerLoad]) -> bool:
+    """Whether the same fingers press at the same places, however much."""
+    return len(loads) == len(others) and all(map(_is_near, loads, others))
+
+
+def _is_near(one: FingerLoad, other: FingerLoad) -> bool:
+    if one.sticks != other.sticks or not meet_alike(one.by, other.by):
+        return False
+    shared = len(np.intersect1d(one.nodes, other.nodes))
+    return shared >= SHARED * min(len(one.nodes), len(other.nodes))
 
 
 def meet_alike(one: Setting | None, other: Setting | None) -> bool:

@@ -6,15 +6,11 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from .finger_load import FingerLoad, meet_alike
-from .firmness import Firmness
+from .finger_load import FingerLoad, are_near
+from .pressed import Firmness
 
 # So many are remembered, the last ones.
 MOST = 16
-# Share of the fewer nodes that presses at one place have in common.
-SHARED = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,20 +31,9 @@ class FirmPlaces:
 
     def at(self, loads: Sequence[FingerLoad]) -> Firmness:
         """That of the deepest press there by the same fingers; where there is none a linear one."""
-        there = (known.firmness for known in self._known if _are_near(known.loads, loads))
+        there = (known.firmness for known in self._known if are_near(known.loads, loads))
         return max(there, key=lambda firmness: firmness.reach, default=Firmness())
 
     def forget(self) -> None:
         """All of them: the body is another one."""
         self._known.clear()
-
-
-def _are_near(some: Sequence[FingerLoad], others: Sequence[FingerLoad]) -> bool:
-    return len(some) == len(others) and all(map(_is_near, some, others))
-
-
-def _is_near(one: FingerLoad, other: FingerLoad) -> bool:
-    if one.sticks != other.sticks or not meet_alike(one.by, other.by):
-        return False
-    shared = len(np.intersect1d(one.nodes, other.nodes))
-    return shared >= SHARED * min(len(one.nodes), len(other.nodes))

@@ -15,7 +15,6 @@ looked at is as firm as the deepest.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,9 +24,10 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
-from .beside_tools import beside_tools, between_tools
+from .beside.beside_tools import beside_tools, between_tools
 from .finger_load import FingerLoad, on_free_nodes, totals
-from .linear_press import LinearPress, farthest_of
+from .linear_press import LinearPress
+from .pressed import LEAST, LINEAR, MOST, Firmness, Found, Pressed, between, through
 from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
@@ -39,71 +39,8 @@ DEPTHS, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), 0.5, 0.75
 CLOSE, MOST_STEPS = 0.002, 600
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
-# Times as far as a linear body at most: beyond, it swings away from its tool instead of giving way.
-FARTHEST = 1.25
-# Bounds of what is believed.
-LEAST, MOST = 0.1, 30.0
-
-
-@dataclass(frozen=True)
-class Firmness:
-    """Firmness as a function of the elastic energy W of the linear press, at unit modulus.
-
-    Attributes
-    ----------
-    root, whole : G is 1 + root sqrt(W) + whole W, W in J/Pa.
-    reach : W beyond which G stays.
-    is_whole : whether it was found to the whole depth.
-    """
-
-    root: float = 0.0
-    whole: float = 0.0
-    reach: float = 0.0
-    is_whole: bool = True
-
-    def at(self, energy: float) -> float:
-        """G of a linear press that holds ``energy``, J/Pa."""
-        known = min(max(energy, 0.0), self.reach)
-        return min(max(1.0 + self.root * math.sqrt(known) + self.whole * known, LEAST), MOST)
-
-    def times(self, share: float) -> Firmness:
-        """The same to the same depth, where ``share`` of the energy is held so deep."""
-        return replace(
-            self,
-            root=self.root / math.sqrt(share),
-            whole=self.whole / share,
-            reach=self.reach * share,
-        )
-
-    @property
-    def deepest(self) -> float:
-        """G at the reach, and beyond."""
-        return self.at(self.reach)
-
-    @property
-    def mean(self) -> float:
-        """The mean of G from none to the reach: what is held there over the linear energy."""
-        known = self.reach
-        return 1.0 + 2.0 / 3.0 * self.root * math.sqrt(known) + 0.5 * self.whole * known
-
-
-@dataclass(frozen=True, eq=False)
-class Pressed:
-    """A press of a body of its law.
-
-    Attributes
-    ----------
-    firmness : of it.
-    energy : elastic, of the linear press, J/Pa.
-    displacements : (f, 3) of the free nodes, metres; None where no rest was found so deep.
-    """
-
-    firmness: Firmness
-    energy: float
-    displacements: Array | None
-
-
-LINEAR = Pressed(Firmness(), 0.0, None)
+# So many nodes at most are led by themselves of what nothing holds, by weight and supports.
+MOST_LED = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,22 +59,29 @@ class FirmBody:
         """
         return self.pressed(loads).firmness
 
-    def pressed(self, loads: Sequence[FingerLoad], ahead: float = 1.0) -> Pressed:
-        """The same, and the body at rest there; ``ahead``, where the press is that much deeper."""
+    def pressed(
+        self, loads: Sequence[FingerLoad], ahead: float = 1.0, before: Found | None = None
+    ) -> Pressed:
+        """The same, and the body at rest there; ``ahead``, where the press is that much deeper.
+
+        ``before``: of a press by the same tools at the same places.
+        """
         energy = self._energy(loads) if loads else 0.0
         if not energy > 0.0:
             return LINEAR
         if self.solid.motions is not None:
-            return replace(self._lying(loads, ahead), energy=energy)
+            return replace(self._lying(loads, ahead, before or Found()), energy=energy)
         beside, trust = self._beside(loads, ahead)
         if trust == 1.0:
             return replace(beside, energy=energy)
         led = self._led([one.times(ahead) for one in loads])
-        return replace(_between(led, beside, trust) if trust else led, energy=energy)
+        return replace(between(led, beside, trust) if trust else led, energy=energy)
 
-    def on_surface(self, loads: Sequence[FingerLoad], ahead: float = 1.0) -> Pressed:
+    def on_surface(
+        self, loads: Sequence[FingerLoad], ahead: float = 1.0, before: Found | None = None
+    ) -> Pressed:
         """The same with the displacements of the free surface nodes alone."""
-        found = self.pressed(loads, ahead)
+        found = self.pressed(loads, ahead, before)
         if found.displacements is None:
             return found
         return replace(found, displacements=found.displacements[self.solid.surface])
@@ -161,37 +105,55 @@ class FirmBody:
         told = [(whole.energy, whole.share)]
         if half is not None and half.energy < whole.energy:
             told.insert(0, (half.energy, half.share))
-        found = Pressed(_through(told), whole.energy, whole.kept.displacements)
+        found = Pressed(through(told), whole.energy, whole.kept.displacements)
         return found, whole.trust
 
-    def _lying(self, loads: Sequence[FingerLoad], ahead: float) -> Pressed:
+    def _lying(self, loads: Sequence[FingerLoad], ahead: float, before: Found) -> Pressed:
         """A body that nothing holds, between all that touches it: by its contact with them where
         they are, and on the way there, and where that is not trusted, by all of their forces.
         """
-        led = self._led([one.times(ahead) for one in loads])
-        known = led.firmness
-        energy = self._energy(loads)
-        found = between_tools(self.body, self.solid, self.relaxation, loads)
-        if found is None:
-            return led
+        kept_out = between_tools(self.body, self.solid, self.relaxation, loads, before.kept)
+        is_known = kept_out is not None and kept_out.trust == 1.0
+        if is_known and before.curve is not None and not before.curve.is_whole:
+            # It would be led as far as before.
+            led = Pressed(before.curve, before.curve.reach, None, before)
+        else:
+            led = self._led([one.times(ahead) for one in loads], before, by_nodes=not is_known)
+        known, went_on = led.firmness, led.found or before
+        if kept_out is None or kept_out.trust == 0.0:
+            kept = before.kept if kept_out is None else kept_out.kept
+            return replace(led, found=replace(went_on, kept=kept))
         # What its weight alone presses answers with that, however firm it is.
         sums = totals(loads)
         weight = float(np.linalg.norm(sums.sum(axis=0)) / np.linalg.norm(sums, axis=1).sum())
-        share = (1.0 - weight) * found.share + weight * known.at(energy)
+        energy = kept_out.energy
+        share = (1.0 - weight) * kept_out.share + weight * known.at(energy)
         half = HALF * HALF * energy
-        through = _through([(half, known.at(half)), (energy, share)])
-        beside = Pressed(through, energy, found.kept.displacements)
-        return beside if found.trust == 1.0 else _between(led, beside, found.trust)
+        curve = through([(half, known.at(half)), (energy, share)])
+        beside = Pressed(curve, energy, kept_out.kept.displacements)
+        pressed = between(led, beside, kept_out.trust)
+        return replace(pressed, found=replace(went_on, kept=kept_out.kept))
 
-    def _led(self, loads: Sequence[FingerLoad]) -> Pressed:
-        """By forces that lead it to where a linear body would be."""
+    def _led(
+        self, loads: Sequence[FingerLoad], before: Found | None = None, *, by_nodes: bool = True
+    ) -> Pressed:
+        """By forces that lead it to where a linear body would be; ``by_nodes``, where they do not
+        in proportion, each by itself.
+        """
         whole = LinearPress.of(self.solid, loads)
-        known, rest = self._led_by(whole)
-        if max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
+        goes_on = self._led_on(whole, before) if before is not None else None
+        known, rest = goes_on or self._led_by(whole)
+        if by_nodes and max(known) < DEPTHS[-1] and self._is_led_by_nodes(loads):
             others, other_rest = self._led_by(LinearPress.of(self.solid, loads, by_nodes=True))
             if max(others) > max(known):
-                known, rest = others, other_rest
-        return self._told(whole, known, rest)
+                return self._told(whole, others, other_rest)
+        told = self._told(whole, known, rest)
+        on = rest if told.firmness.is_whole else None
+        return replace(told, found=Found(None, on, told.firmness))
+
+    def _is_led_by_nodes(self, loads: Sequence[FingerLoad]) -> bool:
+        many = self.solid.motions is not None and sum(len(load.nodes) for load in loads) > MOST_LED
+        return not (many or all(load.sticks for load in loads))
 
     def _told(self, whole: LinearPress, known: dict[float, float], rest: Rest | None) -> Pressed:
         """What G at some shares of the depth, and the rest at the deepest, tell of a press."""
@@ -202,53 +164,33 @@ class FirmBody:
             for depth in sorted({min(HALF, deepest), deepest} - {0.0})
         ]
         moved = whole.met(self.solid, rest.displacements) if rest and is_whole else None
-        return Pressed(replace(_through(told), is_whole=is_whole), whole.energy, moved)
+        return Pressed(replace(through(told), is_whole=is_whole), whole.energy, moved)
+
+    def _led_on(
+        self, press: LinearPress, before: Found
+    ) -> tuple[dict[float, float], Rest | None] | None:
+        """As :meth:`_led_by`, from the rest of one that is near; None where that does not do."""
+        if before.rest is None or before.curve is None:
+            return None
+        rest = self.relaxation.led(press.patterns, press.ways, CLOSE, MOST_STEPS, before.rest)
+        if rest.left > ENOUGH or press.swings(rest.displacements, 1.0):
+            return None
+        share = float(rest.forces @ press.ways) / press.work
+        half = before.curve.at(HALF * HALF * press.energy)
+        return {HALF: half, DEPTHS[-1]: min(max(share, LEAST), MOST)}, rest
 
     def _led_by(self, press: LinearPress) -> tuple[dict[float, float], Rest | None]:
-        """G at all shares of the depth to which there is a rest, and the deepest."""
+        """G at all shares of the depth to which there is a rest, and that at the deepest."""
         known, rest = {0.0: 1.0}, None
         before = 0.0
         for depth in DEPTHS:
             ways = depth * press.ways
             further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
             share = float(further.forces @ press.ways) / (depth * press.work)
-            # A tool's force that falls is of a body that has turned aside, where a tool cannot go;
-            # and so is a way far beyond the linear one, as of a wing that swings.
-            swings = farthest_of(further.displacements) > FARTHEST * depth * press.farthest
-            aside = press.is_of_tools and (depth * share < before or swings)
-            if further.left > ENOUGH or aside:
+            # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
+            falls = press.is_of_tools and depth * share < before
+            if further.left > ENOUGH or falls or press.swings(further.displacements, depth):
                 break
             rest, before = further, depth * share
             known[depth] = min(max(share, LEAST), MOST)
         return known, rest
-
-
-def _between(one: Pressed, other: Pressed, share: float) -> Pressed:
-    """Of two answers about a press, so much of the other; all of it where the first is none."""
-    if one.displacements is None or other.displacements is None:
-        return other
-
-    def at_reach(of: Firmness) -> Array:
-        return np.array([of.root * math.sqrt(of.reach), of.whole * of.reach, of.reach])
-
-    parts = (1.0 - share) * at_reach(one.firmness) + share * at_reach(other.firmness)
-    root, whole, reach = parts.tolist()
-    return Pressed(
-        Firmness(root / math.sqrt(reach), whole / reach, reach),
-        other.energy,
-        (1.0 - share) * one.displacements + share * other.displacements,
-    )
-
-
-def _through(known: Sequence[tuple[float, float]]) -> Firmness:
-    """The parabola over the depth through none, one or two energies with the firmness there,
-    ascending, and 1 at no energy.
-    """
-    if not known:
-        return Firmness()
-    reach = known[-1][0]
-    powers = [0.5, 1.0][: len(known)]
-    rows = [[(energy / reach) ** power for power in powers] for energy, _ in known]
-    found = np.linalg.solve(rows, [min(max(share, LEAST), MOST) - 1.0 for _, share in known])
-    root, whole = [*found, 0.0][:2]
-    return Firmness(root / math.sqrt(reach), whole / reach, reach)

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 # What carries less than this share of a tool's heaviest node is not led by itself.
 LIGHTEST = 1e-3
+# Times as far as a linear body at most: beyond, it swings away from its tool instead of giving way.
+FARTHEST = 1.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +78,7 @@ class LinearPress:
         ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
         work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())
         is_of_tools = not any(load.sticks for load in loads)
-        return cls(made, ways, work, energy, farthest_of(linear), is_of_tools, whole, linear)
+        return cls(made, ways, work, energy, _farthest(linear), is_of_tools, whole, linear)
 
     def met(self, solid: FreeSolid, moved: Array) -> Array:
         """The body at rest where what touches it is; see :func:`.lying.met`."""
@@ -84,7 +86,11 @@ class LinearPress:
             return moved
         return met(solid.motions.of_nodes, moved, self.linear, self.forces)
 
+    def swings(self, moved: Array, depth: float) -> bool:
+        """Whether a body led by tools to a share ``depth`` goes far beyond that, as a wing does."""
+        return self.is_of_tools and _farthest(moved) > FARTHEST * depth * self.farthest
 
-def farthest_of(displacements: Array) -> float:
+
+def _farthest(displacements: Array) -> float:
     """How far a node goes at most, metres."""
     return float(np.linalg.norm(displacements, axis=1).max())

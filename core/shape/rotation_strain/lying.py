@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ...compliance.free_body.inertia import RigidMotions
 from ..solid.free_solid import FreeSolid
+from .beside.held_aside import sliding
 from .finger_load import FingerLoad, on_free_nodes
-from .held_aside import sliding
 
 Array = NDArray[np.float64]
 

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from ...body.soft_body import SoftBody
 from ...errors import PalpateError
 from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad, alike
-from .firmness import LINEAR, FirmBody, Pressed
+from .finger_load import FingerLoad, alike, are_near
+from .firmness import FirmBody
 from .lying import met
+from .pressed import LINEAR, Pressed
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
@@ -122,7 +123,8 @@ class RotationStrainShape:
             # What is drawn and what is felt are asked for one after the other.
             known = self._last
             if known is None or known[1] != ahead or not alike(known[0], unit):
-                self._last = known = unit, ahead, made.firm.on_surface(unit, ahead)
+                before = known[2].found if known and are_near(known[0], unit) else None
+                self._last = known = unit, ahead, made.firm.on_surface(unit, ahead, before)
             return known[2]
 
     def known(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:

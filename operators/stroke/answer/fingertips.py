@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ....core.contact.tool.pose import Pose, facing, resting_on
 from ....core.contact.tool.tool_surface import surface_and_correction
 from ....core.contact.tool.tools import Tool, sphere
+from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.bearing_points import pressing_points
 from ...object.drawn_body import DrawnBody
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 # Radii by which what is beside it may keep a fingertip off its place. Held off by more, as between
 # a wing and the flank, it wedges what is beside it apart, and its own place goes aside.
 FARTHEST_OFF = 0.1
+# Shares of the size asked for that are tried where it does not get to its place.
+SMALLER = (1.0, 0.5, 0.25)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,17 +44,32 @@ class Fingertips:
     samples: Array
 
     @classmethod
-    def over(cls, drawn: DrawnBody, grips: tuple[Grip, ...]) -> Fingertips:
-        """Fingertips as large as grips.
+    def over(cls, drawn: DrawnBody, grips: tuple[Grip, ...], share: float = 1.0) -> Fingertips:
+        """Fingertips as large as grips, or a ``share`` of that.
 
         Raises
         ------
         PalpateError
             They are too small for the body.
         """
-        tool, body = sphere(grips[0].radius), drawn.body
+        tool, body = sphere(share * grips[0].radius), drawn.body
         touched = pressing_points if body.is_free else surface_and_correction
         return cls(drawn, grips, tool, touched(body, tool)[0].positions)
+
+    @classmethod
+    def fitting(cls, drawn: DrawnBody, grips: tuple[Grip, ...]) -> Fingertips:
+        """Fingertips as large as grips, or smaller where what is beside would hold those off.
+
+        Raises
+        ------
+        PalpateError
+            None gets there.
+        """
+        for share in SMALLER:
+            found = cls.over(drawn, grips, share)
+            if found.reach:
+                return found
+        raise PalpateError("No fingertip gets to this place; push beside it, or choose other Pins")
 
     @property
     def reach(self) -> bool:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.contact.tool.pose import AIR, Pose
-from ....core.errors import PalpateError
 from ....core.grip.patch import Grip
 from ....core.rest.rest import Rest
 from ...lying.coming_down import ROLLS, Alone
@@ -45,9 +44,7 @@ class FreePush:
         PalpateError
             They do not fit, or it does not come to rest.
         """
-        tips = Fingertips.over(drawn, grips)
-        if not tips.reach:
-            raise PalpateError("The fingertip does not fit here; a smaller one does")
+        tips = Fingertips.fitting(drawn, grips)
         off = 2.0 * float(np.linalg.norm(rested.displacements, axis=1).max()) + AIR * drawn.size
         starts = [(tips.tool, rested.in_world(tips.pose(grip, -off))) for grip in grips]
         free = alone.touched_by(starts)

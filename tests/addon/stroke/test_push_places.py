@@ -95,3 +95,15 @@ def test_an_ear_that_bends_out_of_the_way_is_taken_along(ear, depth):
     here = np.argmin(np.linalg.norm(rest_places(fine) - place, axis=1))
     # A fingertip slips past its edge, which springs back by half of the way.
     assert -moved(ear, "Press 1")[here, 0] > 0.9 * depth
+
+
+def test_a_smaller_fingertip_gets_to_where_a_large_one_does_not(slotted):
+    slotted.palpate.pin_mode = "NONE"
+    bpy.ops.palpate.rebuild_body()
+    bpy.ops.palpate.stroke(motion="PUSH", place=(0.0, 0.0, FLOOR), radius=0.01, depth=0.002)
+    fine = slotted.palpate.carrier or slotted
+    rest, shift = rest_places(fine), moved(slotted, "Press 1")
+    floor = np.argmin(np.linalg.norm(rest - [0.0, 0.0, FLOOR], axis=1))
+    rims = rest[:, 2] > HALF - 0.001
+    # It goes down beside the rims, which the large one would meet first.
+    assert shift[floor, 2] < shift[rims, 2].min() - 0.001

@@ -52,6 +52,8 @@ impl Relaxation {
                 self.history.clear();
             }
         }
+        // Of springs that others do not have.
+        self.history.clear();
         self.gauge = still;
         rest
     }

@@ -10,7 +10,8 @@ from bodies.bare_body import bare_body, beam_mesh
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad
-from palpate.core.shape.rotation_strain.firmness import FirmBody, Firmness
+from palpate.core.shape.rotation_strain.firmness import FirmBody
+from palpate.core.shape.rotation_strain.pressed import Firmness
 from palpate.core.shape.rotation_strain.relaxation import relaxation
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium

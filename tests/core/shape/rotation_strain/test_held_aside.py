@@ -14,9 +14,9 @@ from palpate.core.rest.rest_settings import RestSettings
 from palpate.core.rest.resting import Resting
 from palpate.core.rest.support import Floor
 from palpate.core.shape.firm_rest import settle_firmly
-from palpate.core.shape.rotation_strain.beside_tools import between_tools
+from palpate.core.shape.rotation_strain.beside.beside_tools import between_tools
+from palpate.core.shape.rotation_strain.beside.held_aside import between, sliding
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad, Footing, Setting
-from palpate.core.shape.rotation_strain.held_aside import between, sliding
 from palpate.core.shape.rotation_strain.relaxation import relaxation
 from palpate.core.shape.shapes import shape
 from palpate.core.shape.solid.free_solid import FreeSolid
@@ -109,6 +109,21 @@ def test_no_place_is_held_by_more_than_its_friction(cube, solid, friction):
     # The foot of a cube that sticks takes a quarter of what presses it.
     assert aside.sum() > min(0.8 * friction, 0.2) * push.sum()
     assert np.all(aside <= 1.05 * friction * np.maximum(push, 0.0) + 1e-3 * push.max())
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_one_that_goes_on_from_where_it_was_comes_to_the_same_rest_in_fewer_steps(
+    cube, solid, friction
+):
+    resting, start = set_down(cube, plate(2 * EDGE, 2 * EDGE), friction, friction)
+    before, after = map(loads_of, led(resting, start, [0.1 * EDGE, 0.11 * EDGE]))
+    first = between_tools(cube, solid, relaxation(solid), before)
+    anew = between_tools(cube, solid, relaxation(solid), after)
+    goes_on = between_tools(cube, solid, relaxation(solid), after, first.kept)
+    off = np.abs(goes_on.kept.displacements - anew.kept.displacements).max()
+    assert goes_on.share == pytest.approx(anew.share, rel=2e-3)
+    assert off < 0.01 * np.abs(anew.kept.displacements).max()
+    assert goes_on.kept.steps < 0.7 * anew.kept.steps
 
 
 @pytest.mark.parametrize("friction", [0.1, 0.25])

@@ -10,10 +10,10 @@ from palpate.core.contact.tool.pose import Pose, facing
 from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.felt import loads_of
-from palpate.core.shape.rotation_strain.beside_tools import beside_tools
+from palpate.core.shape.rotation_strain.beside.beside_tools import beside_tools
+from palpate.core.shape.rotation_strain.beside.kept_out import PLACES, kept_out
 from palpate.core.shape.rotation_strain.finger_load import on_free_nodes
 from palpate.core.shape.rotation_strain.firmness import FirmBody
-from palpate.core.shape.rotation_strain.kept_out import PLACES, kept_out
 from palpate.core.shape.rotation_strain.relaxation import relaxation
 from palpate.core.shape.solid.free_solid import FreeSolid
 

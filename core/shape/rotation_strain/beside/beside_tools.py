@@ -9,27 +9,33 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...body.soft_body import SoftBody
-from ...contact.press import ContactSettings, Press
-from ...contact.tool.pose import Pose
-from ...contact.touches import ToolTouch
-from ...errors import PalpateError
-from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad, Setting, on_free_nodes, totals
+from ....body.soft_body import SoftBody
+from ....contact.press import ContactSettings, Press
+from ....contact.tool.pose import Pose
+from ....contact.touches import ToolTouch
+from ....errors import PalpateError
+from ...solid.free_solid import FreeSolid
+from ..finger_load import FingerLoad, Setting, on_free_nodes, totals
+from ..lying import Loose
+from ..relaxation import Relaxation
 from .kept_out import Kept, kept_out, places_of
-from .lying import Loose
-from .relaxation import Relaxation
 
 Array = NDArray[np.float64]
 
 # What steps may leave, as a share of the work, where the body counts as at rest.
 ENOUGH = 0.015
+# Times that one which nothing holds, and which lies on all of its foot, goes on to there; and what
+# is left of one that goes astray.
+ROUNDS, ASTRAY = 2, 1.0
 # With so few places that press it is not trusted, with so many it is.
 FEW_PLACES, MANY_PLACES = 8.0, 16.0
+# Places at most that press for each node that the linear contact presses.
+PLACES_PER_NODE = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +45,7 @@ class Beside:
     Attributes
     ----------
     share : of the linear force, by which it presses back.
-    trust : 0 to 1, how far its touch is wider than the triangles.
+    trust : 0 to 1, how far its touch is wider than the triangles; 0 where it is not at rest, too.
     energy : elastic, of the linear press, J/Pa.
     kept : it.
     """
@@ -67,14 +73,15 @@ def beside_tools(
     if there is None:
         return None
     linear = loads if depth == 1.0 else _pressed(there)
-    if linear is None:
+    if linear is None or _is_fine(linear):
         return None
     forces = on_free_nodes(solid, linear)
     moved = solid.linear(forces)
     kept = kept_out(body, solid, relaxation, linear, moved if start is None else start)
-    if kept is None or kept.left > ENOUGH:
+    if kept is None:
         return None
-    return _beside(linear, kept, 0.5 * float((forces * moved).sum()))
+    found = _beside(linear, kept, 0.5 * float((forces * moved).sum()))
+    return found if found.trust > 0.0 else None
 
 
 def between_tools(
@@ -82,31 +89,54 @@ def between_tools(
     solid: FreeSolid,
     relaxation: Relaxation,
     loads: Sequence[FingerLoad],
+    before: Kept | None = None,
 ) -> Beside | None:
     """A body that nothing holds where the tools of ``loads`` are, what bears it among them.
 
-    Its weight is as under the linear contact, as many times as the body was firm there. None as of
-    :func:`beside_tools`.
+    Its weight is as under the linear contact, as many times as the body was firm there. ``before``:
+    it beside the same tools, from where it goes on. None where a load is of no tool, where there is
+    too much to meet, or where so few places were pressed before that they would not be trusted now.
     """
     if solid.motions is None or any(load.by is None for load in loads):
+        return None
+    if _is_fine(loads) or (before and before.pressing * _grown(before, loads) < FEW_PLACES):
         return None
     forces = on_free_nodes(solid, loads)
     moved = solid.linear(forces)
     loose, firmness = Loose.of(solid, solid.motions, loads), loads[0].firmness
-    kept = kept_out(body, solid, relaxation, loads, moved, loose, firmness)
-    if kept is None or kept.left > ENOUGH:
-        return None
-    energy = 0.5 * float((forces * moved).sum())
-    return _beside(loads, kept, energy)
+    at = partial(kept_out, body, solid, relaxation, loads, moved, loose, firmness)
+    kept = at(before)
+    for _ in range(ROUNDS):
+        if kept is None or kept.left <= ENOUGH or kept.pressing <= FEW_PLACES:
+            break
+        # What began too far off does not come back from where it went.
+        kept = at(kept if kept.left < ASTRAY else None)
+    return None if kept is None else _beside(loads, kept, 0.5 * float((forces * moved).sum()))
 
 
-def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float) -> Beside | None:
-    trust = min((kept.pressing - FEW_PLACES) / (MANY_PLACES - FEW_PLACES), 1.0)
-    if trust <= 0.0:
-        return None
+def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float) -> Beside:
+    wide = (kept.pressing - FEW_PLACES) / (MANY_PLACES - FEW_PLACES)
+    trust = 0.0 if kept.left > ENOUGH else min(max(wide, 0.0), 1.0)
     along = totals(loads)
     share = float((kept.forces * along).sum()) / float((along * along).sum())
     return Beside(share, trust, energy, kept)
+
+
+def _is_fine(loads: Sequence[FingerLoad]) -> bool:
+    """Whether the touch of a tool is so fine that its places would not be trusted."""
+    nodes = min(_carrying(np.linalg.norm(load.forces, axis=1)) for load in loads)
+    return PLACES_PER_NODE * nodes < FEW_PLACES
+
+
+def _carrying(sizes: Array) -> float:
+    """On how many places forces of these sizes are; fewer where few carry most of them."""
+    return float(sizes.sum() ** 2 / max((sizes**2).sum(), np.finfo(float).tiny))
+
+
+def _grown(before: Kept, loads: Sequence[FingerLoad]) -> float:
+    """How many times as much tools press as before, the one that presses most so."""
+    now, then = (np.linalg.norm(forces, axis=1) for forces in (totals(loads), before.forces))
+    return float((now / np.maximum(then, np.finfo(float).tiny)).max())
 
 
 def _withdrawn(loads: Sequence[FingerLoad], depth: float) -> list[FingerLoad] | None:

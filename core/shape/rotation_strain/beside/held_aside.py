@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from ...body.soft_body import SoftBody
-from ...contact.near_field.contact_points import ContactPoints
-from .finger_load import FingerLoad, Footing, Setting
+from ....body.soft_body import SoftBody
+from ....contact.near_field.contact_points import ContactPoints
+from ..finger_load import FingerLoad, Footing, Setting
 
 Array = NDArray[np.float64]
 

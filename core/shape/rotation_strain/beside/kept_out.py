@@ -15,16 +15,16 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ...body.imprinted_body import ImprintedBody, as_touched
-from ...body.soft_body import SoftBody
-from ...contact.near_field.contact_points import ContactPoints
-from ...contact.near_field.surface_shape import face_areas, face_normals
-from ...contact.tool.native_tool import native_shape
-from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad, Setting, on_free_nodes
+from ....body.imprinted_body import ImprintedBody, as_touched
+from ....body.soft_body import SoftBody
+from ....contact.near_field.contact_points import ContactPoints
+from ....contact.near_field.surface_shape import face_areas, face_normals
+from ....contact.tool.native_tool import native_shape
+from ...solid.free_solid import FreeSolid
+from ..finger_load import FingerLoad, Setting, on_free_nodes
+from ..lying import Loose
+from ..relaxation import Relaxation, fields_of
 from .held_aside import held_aside
-from .lying import Loose
-from .relaxation import Relaxation, fields_of
 
 Array = NDArray[np.float64]
 
@@ -52,6 +52,7 @@ class Kept:
     displacements : (f, 3) of the free nodes, metres.
     forces : (k, 3) on the body, of each tool.
     pressing : on how many places the least of them does; fewer where few carry most of it.
+    near, pushes : places (p,) of each that may meet it, and the forces (p, 3) on all of these.
     left : what is not at rest or still within, as a share of the work.
     steps : that it took.
     """
@@ -60,6 +61,8 @@ class Kept:
     displacements: Array
     forces: Array
     pressing: float
+    near: Sequence[NDArray[np.int64]]
+    pushes: Array
     left: float
     steps: int
 
@@ -94,11 +97,13 @@ def kept_out(
     start: Array,
     loose: Loose | None = None,
     firmness: float = 1.0,
+    before: Kept | None = None,
 ) -> Kept | None:
     """The body beside the tools of ``loads``; None where they are none or meet too much.
 
     ``start``: linear displacements (f, 3) to begin from. ``loose``: how it goes as a whole between
-    them, and so many times its dead loads press it beside.
+    them, and so many times its dead loads press it beside; ``before``: of a loose body, beside the
+    same tools hardly elsewhere, from where it goes on.
     """
     whole = [(load, load.by) for load in loads if load.by is not None]
     if len(whole) < len(loads):
@@ -125,7 +130,7 @@ def kept_out(
     if loose is not None:
         compliance = compliance + loose.compliance(np.searchsorted(solid.free, seen))
     linear, moved, pushes, left, steps = relaxation.native.kept_out(
-        start,
+        start if before is None else before.linear,
         [(native_shape(by.tool), by.pose.position, by.pose.rotation) for _, by in whole],
         (
             free.ravel(),
@@ -141,14 +146,14 @@ def kept_out(
         MOST_STEPS,
         None if loose is None else firmness * loose.dead,
         None if loose is None else (*fields_of(loose.motions), loose.gives.tolist()),
-        None if loose is None else _held_by(whole, places, free, shares, start),
+        None if loose is None else _held_by(whole, places, free, shares, start, near, before),
     )
     forces = np.zeros((len(whole), 3))
     np.add.at(forces, which, pushes)
     sizes = np.linalg.norm(pushes, axis=1)
     sums, squares = np.bincount(which, sizes), np.bincount(which, sizes * sizes)
     pressing = float((sums * sums / np.maximum(squares, np.finfo(float).tiny)).min())
-    return Kept(linear, moved, forces, pressing, left, steps)
+    return Kept(linear, moved, forces, pressing, near, pushes, left, steps)
 
 
 def _held_by(
@@ -157,6 +162,8 @@ def _held_by(
     free: NDArray[np.int64],
     shares: Array,
     moved: Array,
+    near: Sequence[NDArray[np.int64]],
+    before: Kept | None,
 ) -> tuple[Array, Array, Array, Array, Array]:
     ends = np.cumsum([len(one.triangles) for one in places])[:-1]
     parts = zip(whole, places, np.split(free, ends), np.split(shares, ends), strict=True)
@@ -168,7 +175,26 @@ def _held_by(
         np.concatenate([getattr(one, name) for one in every])
         for name in ("goals", "normals", "friction", "pushes", "pulls")
     )
+    if before is not None:
+        forces = _on_places(near, before)
+        along = np.einsum("pi,pi->p", forces, normals)
+        sizes = np.linalg.norm(forces, axis=1)
+        # Of smooth tools no normals are told, and all that they do is to push.
+        pushes = np.where(friction > 0.0, np.maximum(along, 0.0), sizes)
+        pulls = np.where(friction[:, None] > 0.0, forces - along[:, None] * normals, 0.0)
     return goals, normals, friction, pushes, pulls
+
+
+def _on_places(near: Sequence[NDArray[np.int64]], before: Kept) -> Array:
+    """The forces (p, 3) that places were under, in the order of now; none on those that are new."""
+    ends = np.cumsum([len(one) for one in before.near])[:-1]
+    found = []
+    for now, known, pushes in zip(near, before.near, np.split(before.pushes, ends), strict=True):
+        _, here, there = np.intersect1d(now, known, assume_unique=True, return_indices=True)
+        forces = np.zeros((len(now), 3))
+        forces[here] = pushes[there]
+        found.append(forces)
+    return np.concatenate(found)
 
 
 def _near(load: FingerLoad, by: Setting) -> NDArray[np.int64]:

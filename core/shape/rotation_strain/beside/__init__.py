@@ -1,0 +1,1 @@
+"""A body at rest beside tools, which it is kept out of and held by."""
