@@ -36,6 +36,10 @@ Array = NDArray[np.float64]
 # Share of its size over what bears it at which a body that falls is looked at again.
 LANDING = 0.05
 
+# Weight over stiffness, rho g h / E, beyond which a body is a heap: a block of twice that would be
+# pressed to nothing if it gave way as a linear one, and falls over before.
+HEAP = 0.5
+
 # Of each body the one at other constants than its file tells: much is kept with that.
 _chosen: WeakKeyDictionary[SoftBody, SoftBody] = WeakKeyDictionary()
 
@@ -212,7 +216,8 @@ def supports_under(
     Raises
     ------
     PalpateError
-        It is pinned or cannot move by itself, nothing bears it, with the remedy.
+        It is pinned or cannot move by itself, too soft to stand, or nothing bears it, with the
+        remedy.
     """
     reason = _refusal(thing)
     if reason is not None:
@@ -222,7 +227,21 @@ def supports_under(
             "{name} is pinned, so it stays where it is; choose Pins: None and press Rebuild Body",
             name=thing.name,
         )
+    if _softness(thing, drawn, graph.scene) > HEAP:
+        raise PalpateError(
+            "{name} is too soft for its size: it would sink into a heap by its weight; choose a "
+            "firmer or lighter Material, make it smaller, or choose other Pins",
+            name=thing.name,
+        )
     return supports_of(thing, drawn, graph, besides=besides)
+
+
+def _softness(thing: bpy.types.Object, drawn: DrawnBody, scene: bpy.types.Scene) -> float:
+    """An object's weight over its stiffness, rho g h / E, where it is."""
+    pull = np.array(scene_gravity(scene))
+    heights = placement_of(drawn.frame).to_world(drawn.surface_nodes) @ pull
+    chosen = thing.palpate
+    return chosen.density * float(np.ptp(heights)) / chosen.young_modulus
 
 
 def _refusal(thing: bpy.types.Object) -> PalpateError | None:

@@ -176,6 +176,16 @@ def test_what_cannot_lie_by_itself_is_refused_with_the_remedy(free_cube, thing):
     assert "parent" in error_of(bpy.ops.palpate.settle)
 
 
+def test_one_that_would_sink_into_a_heap_is_told_so_and_stays(free_cube):
+    free_cube.palpate.density, free_cube.palpate.young_modulus = 100.0, 90.0
+    before, place = mesh_state(free_cube), free_cube.matrix_world.copy()
+    assert "is too soft for its size" in error_of(bpy.ops.palpate.settle)
+    assert mesh_state(free_cube) == before
+    assert free_cube.matrix_world == place
+    free_cube.palpate.young_modulus = 400.0
+    assert bpy.ops.palpate.settle() == {"FINISHED"}
+
+
 def test_a_turned_object_tips_onto_a_face_and_keeps_its_scale(free_cube):
     turn = Euler((0.2, 0.1, 0.3))
     free_cube.matrix_world = Matrix.LocRotScale((0.1, 0.2, 0.06), turn, (1.0, 1.0, 1.0))
