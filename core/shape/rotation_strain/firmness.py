@@ -39,8 +39,6 @@ DEPTHS, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), 0.5, 0.75
 CLOSE, MOST_STEPS = 0.002, 600
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
-# So many nodes at most are led by themselves of what nothing holds, by weight and supports.
-MOST_LED = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,17 +141,13 @@ class FirmBody:
         whole = LinearPress.of(self.solid, loads)
         goes_on = self._led_on(whole, before) if before is not None else None
         known, rest = goes_on or self._led_by(whole)
-        if by_nodes and max(known) < DEPTHS[-1] and self._is_led_by_nodes(loads):
+        if by_nodes and max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
             others, other_rest = self._led_by(LinearPress.of(self.solid, loads, by_nodes=True))
             if max(others) > max(known):
                 return self._told(whole, others, other_rest)
         told = self._told(whole, known, rest)
         on = rest if told.firmness.is_whole else None
         return replace(told, found=Found(None, on, told.firmness))
-
-    def _is_led_by_nodes(self, loads: Sequence[FingerLoad]) -> bool:
-        many = self.solid.motions is not None and sum(len(load.nodes) for load in loads) > MOST_LED
-        return not (many or all(load.sticks for load in loads))
 
     def _told(self, whole: LinearPress, known: dict[float, float], rest: Rest | None) -> Pressed:
         """What G at some shares of the depth, and the rest at the deepest, tell of a press."""

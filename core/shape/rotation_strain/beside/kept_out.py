@@ -34,8 +34,8 @@ PLACES = np.array([[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0
 FIRMNESS = 30.0
 # What lies within so many edges of a tool at rest may meet it.
 MARGIN_EDGES = 2.0
-# Triangles at most: their places' compliance is factored again and again.
-MOST_TRIANGLES = 1000
+# Triangles at most: the compliance of what presses is factored again and again.
+MOST_TRIANGLES = 2000
 # What is missed as a share of the work, and steps.
 CLOSE, MOST_STEPS = 0.002, 120
 
