@@ -133,7 +133,7 @@ class Box:
         tray = tuple(self._floor(sign * axis) for axis in across for sign in (-1.0, 1.0))
         hands = partial(self._pinching, partial(ball, radius=radius))
         depths = self._depths(BALL_DEPTHS, radius, through / 2.0)
-        return Press("pinched by balls", inward, hands, tray, depths)
+        return Press("pinched by balls, in a tray", inward, hands, tray, depths)
 
     def from_above(
         self,
