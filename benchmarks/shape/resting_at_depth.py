@@ -34,7 +34,7 @@ from palpate.core.law.of_material import RUBBER
 EDGE, UNIFORM = 0.05, 0.003
 
 
-# What is claimed of forces between walls, in a tray, and elsewhere; and of surfaces in the first two.
+# What is claimed of forces between walls, in a tray, elsewhere; of surfaces in the first two.
 BETWEEN_WALLS, IN_A_TRAY, ELSEWHERE, DRAWN = 0.03, 0.05, 0.10, 0.03
 
 
