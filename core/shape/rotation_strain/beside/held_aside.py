@@ -5,6 +5,9 @@ law would go aside: its own friction is what it takes to stay there. So a place 
 is in the linear contact, by no more than friction times what presses it
 (`native/src/solid/load/hold.rs`). One that slides there has come from where friction points to, and
 is held back to there: so it is by all that friction gives.
+
+A linear foot slides a little under each stride of a tool, one of a law less: on what is flat a foot
+is held where it was set down, moved and turned as a whole as the linear one has.
 """
 
 from __future__ import annotations
@@ -25,6 +28,9 @@ Array = NDArray[np.float64]
 SLIDES_FROM = 0.9
 # How far it has come, over the edge of a usual triangle.
 CAME = 0.25
+# A tool is flat where what it pushes with adds up to more than this share of all pushes, little by
+# little.
+FLAT_FROM = 0.98
 # Over how many edges a node's force is spread.
 SPREAD = 1.0
 # Places that are less apart than this share of the edge count alike.
@@ -83,7 +89,29 @@ def held_aside(
     sizes = np.maximum(np.linalg.norm(pulls, axis=1), np.finfo(float).tiny)
     came = CAME * edge * sliding(forces, normals, by.friction)
     back = (came / sizes)[:, None] * pulls
-    return HeldAside(goals + back, normals, np.full(len(goals), by.friction), pushes, pulls)
+    goals = _as_a_whole(goals + back, places.positions, normals, pushes)
+    return HeldAside(goals, normals, np.full(len(goals), by.friction), pushes, pulls)
+
+
+def _as_a_whole(goals: Array, at: Array, normals: Array, pushes: Array) -> Array:
+    """Goals (p, 3) of places ``at`` (p, 3) of a foot, aside those of its motion as a whole where a
+    tool of such normals is flat.
+    """
+    total = pushes.sum()
+    if total == 0.0:
+        return goals
+    shares = pushes / total
+    normal = shares @ normals
+    flatness = float(np.linalg.norm(normal))
+    normal = normal / max(flatness, np.finfo(float).tiny)
+    from_middle, beyond = at - shares @ at, goals - shares @ goals
+    arms = np.cross(normal, from_middle)
+    turn = float(shares @ (arms * beyond).sum(axis=1)) / float(shares @ (arms * arms).sum(axis=1))
+    change = turn * arms - beyond
+    change -= np.einsum("pi,pi->p", change, normals)[:, None] * normals
+    share = np.clip((flatness - FLAT_FROM) / (1.0 - FLAT_FROM), 0.0, 1.0)
+    found: Array = goals + share * change
+    return found
 
 
 def between(footing: Footing, at: Array, edge: float) -> Array:

@@ -79,11 +79,12 @@ def held(solid, lower):
     return moved, -float(solid.forces(moved)[top][:, 2].sum())
 
 
+@pytest.mark.parametrize("strides", [5, 40])
 @pytest.mark.parametrize("share", [0.1, 0.2])
-def test_a_block_between_rough_plates_is_one_whose_faces_are_held(cube, solid, share):
+def test_a_block_between_rough_plates_is_one_whose_faces_are_held(cube, solid, share, strides):
     resting, start = set_down(cube, plate(2 * EDGE, 2 * EDGE), 2.0, 2.0)
-    # A linear foot slides a little in each stride, by less the shorter that is.
-    *_, linear = led(resting, start, share * EDGE * np.geomspace(1e-3, 1.0, 40))
+    # A linear foot slides in each stride, by less the shorter that is.
+    *_, linear = led(resting, start, share * EDGE * np.arange(1, strides + 1) / strides)
     real = shape(cube, "real")
     (rest,) = settle_firmly(resting, [real])
     real.close()
@@ -122,7 +123,7 @@ def test_one_that_goes_on_from_where_it_was_comes_to_the_same_rest_in_fewer_step
     goes_on = between_tools(cube, solid, relaxation(solid), after, first.kept)
     off = np.abs(goes_on.kept.displacements - anew.kept.displacements).max()
     assert goes_on.share == pytest.approx(anew.share, rel=2e-3)
-    assert off < 0.01 * np.abs(anew.kept.displacements).max()
+    assert off < 0.03 * np.abs(anew.kept.displacements).max()
     assert goes_on.kept.steps < 0.7 * anew.kept.steps
 
 
