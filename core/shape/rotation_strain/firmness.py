@@ -27,7 +27,7 @@ from ..solid.free_solid import FreeSolid
 from .beside.beside_tools import beside_tools, between_tools
 from .finger_load import FingerLoad, on_free_nodes, totals
 from .linear_press import LinearPress
-from .pressed import LEAST, LINEAR, MOST, Firmness, Found, Pressed, between, through
+from .pressed import LEAST, LINEAR, MOST, Firmness, Found, Pressed, blended, through
 from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
@@ -73,7 +73,7 @@ class FirmBody:
         if trust == 1.0:
             return replace(beside, energy=energy)
         led = self._led([one.times(ahead) for one in loads])
-        return replace(between(led, beside, trust) if trust else led, energy=energy)
+        return replace(blended(led, beside, trust) if trust else led, energy=energy)
 
     def on_surface(
         self, loads: Sequence[FingerLoad], ahead: float = 1.0, before: Found | None = None
@@ -129,7 +129,7 @@ class FirmBody:
         half = HALF * HALF * energy
         curve = through([(half, known.at(half)), (energy, share)])
         beside = Pressed(curve, energy, kept_out.kept.displacements)
-        pressed = between(led, beside, kept_out.trust)
+        pressed = blended(led, beside, kept_out.trust)
         return replace(pressed, found=replace(went_on, kept=kept_out.kept))
 
     def _led(

@@ -97,7 +97,7 @@ class Pressed:
 LINEAR = Pressed(Firmness(), 0.0, None)
 
 
-def between(one: Pressed, other: Pressed, share: float) -> Pressed:
+def blended(one: Pressed, other: Pressed, share: float) -> Pressed:
     """Of two answers about a press, so much of the other; all of it where the first is none."""
     if one.displacements is None or other.displacements is None:
         return other

@@ -106,7 +106,8 @@ def _as_a_whole(goals: Array, at: Array, normals: Array, pushes: Array) -> Array
     normal = normal / max(flatness, np.finfo(float).tiny)
     from_middle, beyond = at - shares @ at, goals - shares @ goals
     arms = np.cross(normal, from_middle)
-    turn = float(shares @ (arms * beyond).sum(axis=1)) / float(shares @ (arms * arms).sum(axis=1))
+    width = float(shares @ (arms * arms).sum(axis=1))
+    turn = float(shares @ (arms * beyond).sum(axis=1)) / max(width, np.finfo(float).tiny)
     change = turn * arms - beyond
     change -= np.einsum("pi,pi->p", change, normals)[:, None] * normals
     share = np.clip((flatness - FLAT_FROM) / (1.0 - FLAT_FROM), 0.0, 1.0)
