@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ LEAVING = 0.2
 # How far below the surface rays begin, in shares of the mean edge: from a rim they would else run
 # along the surface.
 PULLED_IN = 1e-3
+
+# Of so many parts rays are looked around: balls around long ones hold much that is far from them.
+PARTS = 6
 
 # By how much of a triangle a ray may miss it: rays along edges and through nodes count.
 SLACK = 1e-9
@@ -110,11 +114,15 @@ def _near_pairs(
     """Pairs of ray and triangle that may meet, (k,) each."""
     centres = corners.mean(axis=1)
     radii = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
-    middles = rays.places + 0.5 * rays.lengths[:, None] * rays.directions
-    found = cKDTree(centres).query_ball_point(middles, 0.5 * rays.lengths + radii.max())
-    ray = np.repeat(np.arange(len(middles)), [len(one) for one in found])
-    none = [np.empty(0, dtype=np.int64)]
-    triangle = np.concatenate(none + [np.asarray(one, dtype=np.int64) for one in found])
+    parts = np.repeat(np.arange(len(rays.places)), PARTS)
+    along = np.tile((np.arange(PARTS) + 0.5) / PARTS, len(rays.places)) * rays.lengths[parts]
+    middles = rays.places[parts] + along[:, None] * rays.directions[parts]
+    reach = 0.5 / PARTS * rays.lengths[parts] + radii.max()
+    found = cKDTree(centres).query_ball_point(middles, reach)
+    numbers = np.fromiter(chain.from_iterable(found), np.int64)
+    # Parts of a ray find one triangle more than once.
+    pairs = np.unique(np.repeat(parts, [len(one) for one in found]) * len(corners) + numbers)
+    ray, triangle = np.divmod(pairs, len(corners))
     # Only those that the line passes.
     offset, along = centres[triangle] - rays.places[ray], rays.directions[ray]
     aside = offset - np.einsum("kx,kx->k", offset, along)[:, None] * along
