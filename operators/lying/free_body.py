@@ -36,8 +36,8 @@ Array = NDArray[np.float64]
 # Share of its size over what bears it at which a body that falls is looked at again.
 LANDING = 0.05
 
-# Weight over stiffness, rho g h / E, beyond which a body is a heap: a block of twice that would be
-# pressed to nothing if it gave way as a linear one, and falls over before.
+# Weight over stiffness, rho g h / E, beyond which a body is a heap: the foot of a block of twice
+# that would be pressed to nothing if it gave way as a linear one, and it falls over before.
 HEAP = 0.5
 
 # Of each body the one at other constants than its file tells: much is kept with that.
@@ -227,7 +227,7 @@ def supports_under(
             "{name} is pinned, so it stays where it is; choose Pins: None and press Rebuild Body",
             name=thing.name,
         )
-    if _softness(thing, drawn, graph.scene) > HEAP:
+    if _limpness(thing, drawn, graph.scene) > HEAP:
         raise PalpateError(
             "{name} is too soft for its size: it would sink into a heap by its weight; choose a "
             "firmer or lighter Material, make it smaller, or choose other Pins",
@@ -236,8 +236,8 @@ def supports_under(
     return supports_of(thing, drawn, graph, besides=besides)
 
 
-def _softness(thing: bpy.types.Object, drawn: DrawnBody, scene: bpy.types.Scene) -> float:
-    """An object's weight over its stiffness, rho g h / E, where it is."""
+def _limpness(thing: bpy.types.Object, drawn: DrawnBody, scene: bpy.types.Scene) -> float:
+    """Of an object as it stands, rho g h / E."""
     pull = np.array(scene_gravity(scene))
     heights = placement_of(drawn.frame).to_world(drawn.surface_nodes) @ pull
     chosen = thing.palpate

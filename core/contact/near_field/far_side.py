@@ -115,8 +115,8 @@ def _near_pairs(
     centres = corners.mean(axis=1)
     radii = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
     parts = np.repeat(np.arange(len(rays.places)), PARTS)
-    along = np.tile((np.arange(PARTS) + 0.5) / PARTS, len(rays.places)) * rays.lengths[parts]
-    middles = rays.places[parts] + along[:, None] * rays.directions[parts]
+    ways = np.tile((np.arange(PARTS) + 0.5) / PARTS, len(rays.places)) * rays.lengths[parts]
+    middles = rays.places[parts] + ways[:, None] * rays.directions[parts]
     reach = 0.5 / PARTS * rays.lengths[parts] + radii.max()
     found = cKDTree(centres).query_ball_point(middles, reach)
     numbers = np.fromiter(chain.from_iterable(found), np.int64)

@@ -27,7 +27,7 @@ from ..solid.free_solid import FreeSolid
 from .beside.beside_tools import beside_tools, between_tools
 from .finger_load import FingerLoad, on_free_nodes, totals
 from .linear_press import LinearPress
-from .pressed import LEAST, LINEAR, MOST, Firmness, Found, Pressed, blended, through
+from .pressed import LINEAR, Firmness, Found, Pressed, blended, through
 from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
@@ -117,10 +117,11 @@ class FirmBody:
             led = Pressed(before.curve, before.curve.reach, None, before)
         else:
             led = self._led([one.times(ahead) for one in loads], before, by_nodes=not is_known)
-        known, went_on = led.firmness, led.found or before
+        known = led.firmness
+        kept = before.kept if kept_out is None else kept_out.kept
+        found = replace(led.found or before, kept=kept)
         if kept_out is None or kept_out.trust == 0.0:
-            kept = before.kept if kept_out is None else kept_out.kept
-            return replace(led, found=replace(went_on, kept=kept))
+            return replace(led, found=found)
         # What its weight alone presses answers with that, however firm it is.
         sums = totals(loads)
         weight = float(np.linalg.norm(sums.sum(axis=0)) / np.linalg.norm(sums, axis=1).sum())
@@ -129,8 +130,7 @@ class FirmBody:
         half = HALF * HALF * energy
         curve = through([(half, known.at(half)), (energy, share)])
         beside = Pressed(curve, energy, kept_out.kept.displacements)
-        pressed = blended(led, beside, kept_out.trust)
-        return replace(pressed, found=replace(went_on, kept=kept_out.kept))
+        return replace(blended(led, beside, kept_out.trust), found=found)
 
     def _led(
         self, loads: Sequence[FingerLoad], before: Found | None = None, *, by_nodes: bool = True
@@ -171,7 +171,7 @@ class FirmBody:
             return None
         share = float(rest.forces @ press.ways) / press.work
         half = before.curve.at(HALF * HALF * press.energy)
-        return {HALF: half, DEPTHS[-1]: min(max(share, LEAST), MOST)}, rest
+        return {HALF: half, DEPTHS[-1]: share}, rest
 
     def _led_by(self, press: LinearPress) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and that at the deepest."""
@@ -186,5 +186,5 @@ class FirmBody:
             if further.left > ENOUGH or falls or press.swings(further.displacements, depth):
                 break
             rest, before = further, depth * share
-            known[depth] = min(max(share, LEAST), MOST)
+            known[depth] = share
         return known, rest

@@ -23,7 +23,7 @@ from ...solid.free_solid import FreeSolid
 from ..finger_load import FingerLoad, Setting, on_free_nodes, totals
 from ..lying import Loose
 from ..relaxation import Relaxation
-from .kept_out import Kept, kept_out, places_of
+from .kept_out import Kept, carrying, kept_out, places_of
 
 Array = NDArray[np.float64]
 
@@ -124,13 +124,8 @@ def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float) -> Beside:
 
 def _is_fine(loads: Sequence[FingerLoad]) -> bool:
     """Whether the touch of a tool is so fine that its places would not be trusted."""
-    nodes = min(_carrying(np.linalg.norm(load.forces, axis=1)) for load in loads)
+    nodes = min(carrying(load.forces) for load in loads)
     return PLACES_PER_NODE * nodes < FEW_PLACES
-
-
-def _carrying(sizes: Array) -> float:
-    """On how many places forces of these sizes are; fewer where few carry most of them."""
-    return float(sizes.sum() ** 2 / max((sizes**2).sum(), np.finfo(float).tiny))
 
 
 def _grown(before: Kept, loads: Sequence[FingerLoad]) -> float:

@@ -84,8 +84,7 @@ def held_aside(
     _, out = by.tool.distance(by.pose.to_tool(places.positions + goals))
     normals = out @ by.pose.rotation.T
     forces = load.firmness * _spread(load, by.body, places, edge)
-    along = np.einsum("pi,pi->p", forces, normals)
-    pushes, pulls = np.maximum(along, 0.0), forces - along[:, None] * normals
+    pushes, pulls = pushed_and_pulled(forces, normals)
     sizes = np.maximum(np.linalg.norm(pulls, axis=1), np.finfo(float).tiny)
     came = CAME * edge * sliding(forces, normals, by.friction)
     back = (came / sizes)[:, None] * pulls
@@ -115,6 +114,12 @@ def _as_a_whole(goals: Array, at: Array, normals: Array, pushes: Array) -> Array
     return found
 
 
+def pushed_and_pulled(forces: Array, normals: Array) -> tuple[Array, Array]:
+    """How much forces (p, 3) push along normals, (p,), and what they pull aside, (p, 3)."""
+    along = np.einsum("pi,pi->p", forces, normals)
+    return np.maximum(along, 0.0), forces - along[:, None] * normals
+
+
 def between(footing: Footing, at: Array, edge: float) -> Array:
     """How far places ``at`` (p, 3), at rest, have gone among those that are pressed, (p, 3): the
     mean of these, the nearest first; continuous as they come and go.
@@ -127,9 +132,8 @@ def between(footing: Footing, at: Array, edge: float) -> Array:
 
 def sliding(forces: Array, normals: Array, friction: float) -> Array:
     """How far places under forces (p, 3) by tools with such normals slide, 0 to 1, (p,)."""
-    along = np.einsum("pi,pi->p", forces, normals)
-    aside = np.linalg.norm(forces - along[:, None] * normals, axis=1)
-    most = friction * np.maximum(along, 0.0)
+    pushes, pulls = pushed_and_pulled(forces, normals)
+    aside, most = np.linalg.norm(pulls, axis=1), friction * pushes
     share = np.ones(len(forces))
     np.divide(aside, most, out=share, where=most > 0.0)
     found: Array = np.clip((share - SLIDES_FROM) / (1.0 - SLIDES_FROM), 0.0, 1.0)

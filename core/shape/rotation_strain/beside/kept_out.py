@@ -24,7 +24,7 @@ from ...solid.free_solid import FreeSolid
 from ..finger_load import FingerLoad, Setting, on_free_nodes
 from ..lying import Loose
 from ..relaxation import Relaxation, fields_of
-from .held_aside import held_aside
+from .held_aside import held_aside, pushed_and_pulled
 
 Array = NDArray[np.float64]
 
@@ -150,10 +150,14 @@ def kept_out(
     )
     forces = np.zeros((len(whole), 3))
     np.add.at(forces, which, pushes)
-    sizes = np.linalg.norm(pushes, axis=1)
-    sums, squares = np.bincount(which, sizes), np.bincount(which, sizes * sizes)
-    pressing = float((sums * sums / np.maximum(squares, np.finfo(float).tiny)).min())
+    pressing = min(carrying(pushes[which == one]) for one in range(len(whole)))
     return Kept(linear, moved, forces, pressing, near, pushes, left, steps)
+
+
+def carrying(forces: Array) -> float:
+    """On how many of (k, 3) places forces are; fewer where few carry most of them."""
+    sizes = np.linalg.norm(forces, axis=1)
+    return float(sizes.sum() ** 2 / max((sizes * sizes).sum(), np.finfo(float).tiny))
 
 
 def _held_by(
@@ -177,11 +181,10 @@ def _held_by(
     )
     if before is not None:
         forces = _on_places(near, before)
-        along = np.einsum("pi,pi->p", forces, normals)
-        sizes = np.linalg.norm(forces, axis=1)
+        pushes, pulls = pushed_and_pulled(forces, normals)
         # Of smooth tools no normals are told, and all that they do is to push.
-        pushes = np.where(friction > 0.0, np.maximum(along, 0.0), sizes)
-        pulls = np.where(friction[:, None] > 0.0, forces - along[:, None] * normals, 0.0)
+        smooth = friction == 0.0
+        pushes[smooth], pulls[smooth] = np.linalg.norm(forces[smooth], axis=1), 0.0
     return goals, normals, friction, pushes, pulls
 
 
