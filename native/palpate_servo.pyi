@@ -551,6 +551,7 @@ class Prop:
         centre: _Vector,
         inertia: _Matrix,
         drag_time: float,
+        is_steady: bool,
         gravity: _Vector,
         supports: Sequence[LaidTool],
         position: _Vector,
@@ -559,7 +560,8 @@ class Prop:
         """Lay a whole body down with its frame so posed.
 
         mass, kg; centre of mass, m, and inertia about it, kg m^2, at rest; under a force its speed
-        is that over the mass times drag_time, s; gravity, m/s^2. Supports: contact points on the
+        is that over the mass times drag_time, s; is_steady, whether a hand keeps it from sliding
+        and turning; gravity, m/s^2. Supports: contact points on the
         body, shape, position, rotation, coefficient of friction.
 
         Raises ValueError for more supports than MOST_SUPPORTS, one for another body, a body that
@@ -594,8 +596,9 @@ class PileContacts(TypedDict):
     share: NDArray[np.float64]
     """Its share."""
 
-FreeMember: TypeAlias = tuple[float, _Vector, _Matrix, float]
-"""Mass, centre of mass, moments of inertia about it, drag time."""
+FreeMember: TypeAlias = tuple[float, _Vector, _Matrix, float, bool]
+"""Mass, centre of mass, moments of inertia about it, drag time, whether a hand keeps it from
+sliding and turning."""
 Member: TypeAlias = tuple[
     ToolSurface, ToolSurface | None, float, FreeMember | None, _Vector, _Matrix
 ]

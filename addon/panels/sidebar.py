@@ -114,6 +114,8 @@ class PALPATE_PT_pins(PalpatePanel, bpy.types.Panel):
         elif settings.pin_mode == "BELOW":
             layout.prop(settings, "pin_fraction")
             layout.operator("palpate.pin_below", icon="GROUP_VERTEX")
+        elif settings.pin_mode == "NONE":
+            layout.prop(settings, "steady")
         if settings.pin_mode != "NONE":
             layout.prop(context.scene.palpate, "show_pins")
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .kinds import choice, chosen_collection, number, result, span
+from .kinds import choice, chosen_collection, number, result, span, switch
 
 FLOOR_ITEMS = [
     (
@@ -39,6 +39,12 @@ class RestProperties:
         "Between the object and what it rests on: sideways force over pressing force",
         0.5,
         span(0.0, 5.0, soft_max=1.5, precision=2, step=5),
+    )
+
+    steady: switch(
+        "Steady",
+        "While it is pressed, your other hand keeps it from sliding, turning and falling over; "
+        "Grab, Twist and pulls stretch it then, instead of carrying it",
     )
 
     # Where it was before it first came to lie, where it was laid last, and the floor found, m.

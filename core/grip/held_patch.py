@@ -10,7 +10,7 @@ at the rim, where that of a rigid patch would be infinite and draw an edge into 
 all forces with these springs they are those of least energy. D_i = R (1 / w_i - 1) / (a_i E) for a
 firmness w_i, a share a_i of the surface and the radius R: the same hand on any mesh.
 
-A body that nobody holds gives way to all that does not balance. So its forces do, R^T F = 0 with
+A body that nothing holds gives way to all that does not balance. So its forces do, R^T F = 0 with
 its rigid motions R, and the hand goes along with what these leave free, ``(L_SS + D) F = g - R q``:
 it draws a patch together or apart, and what moves or turns it as a whole takes no force.
 
@@ -91,8 +91,12 @@ class HeldPatch:
     axis: Array
 
     @classmethod
-    def of(cls, body: SoftBody, grips: Sequence[Grip], normals: Array) -> HeldPatch:
-        """Take hold of the body; ``normals`` (s, 3) are outward at its surface nodes.
+    def of(
+        cls, body: SoftBody, grips: Sequence[Grip], normals: Array, *, is_held: bool | None = None
+    ) -> HeldPatch:
+        """Take hold of the body; ``normals`` (s, 3) are outward at its surface nodes. Where it
+        ``is_held``, what does not balance is carried by pins, or by a hand that steadies it. None:
+        as its pins say.
 
         Raises
         ------
@@ -116,7 +120,7 @@ class HeldPatch:
         hold = _Hold(
             nodes, places, node_areas(mesh)[held], weights.max(axis=1), _radius(patches), asked
         )
-        forces = hold.forces(body)
+        forces = hold.forces(body, is_held=not body.is_free if is_held is None else is_held)
         moved = [body.compliance.apply(forces[:, :, number], nodes) for number in range(FIELDS)]
         return cls(
             body,
@@ -153,7 +157,7 @@ class _Hold:
     radius: float
     asked: Array
 
-    def forces(self, body: SoftBody) -> Array:
+    def forces(self, body: SoftBody, *, is_held: bool) -> Array:
         """Least forces (k, 3, m) at unit modulus."""
         cell = cells_of(self.places, MOST_CELLS)
         count = int(cell.max()) + 1
@@ -166,7 +170,7 @@ class _Hold:
         np.add.at(asked, cell, spread[:, None, None] * self.asked)
         right = asked.reshape(3 * count, -1)
         matrix = compliance + np.diag(every)
-        if body.is_free:
+        if not is_held:
             middles = np.zeros((count, 3))
             np.add.at(middles, cell, spread[:, None] * self.places)
             solved = _balanced(matrix, right, middles)

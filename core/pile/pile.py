@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from palpate_servo import Pile as NativePile
 
 from ..body.soft_body import SoftBody
@@ -17,6 +18,7 @@ from ..errors import PalpateError
 from ..rest.prop import at
 from ..rest.refusals import one_goal_each, rest_errors
 from ..rest.rest import Rest
+from ..rest.rest_settings import down
 from ..rest.support import Floor, Support, friction_checked
 from .felt import Felt
 from .pile_settings import USUAL_PILE, PileSettings
@@ -88,13 +90,14 @@ class Pile:
         hands += [(self.bodies[0], tool) for tool in fingertips]
         touched: dict[SoftBody, Touched] = {}
         laid = []
-        for body, placement in bodies:
+        for number, (body, placement) in enumerate(bodies):
             if body not in touched:
                 own = [tool for of, tool in hands if of is body]
                 touched[body] = Touched.of(body, own, settings.spacing)
             free = None
             if body.is_free:
-                free = body.mass, body.inertia.centre, body.moments, settings.drag_time
+                kept = settings.drag_time, number in settings.steady
+                free = body.mass, body.inertia.centre, body.moments, *kept
             points = touched[body].surface, touched[body].by_hands
             laid.append((*points, body.modulus(None), free, *at(placement)))
         self._points = [touched[body].points for body in self.bodies]
@@ -104,6 +107,7 @@ class Pile:
             *(rigid(support, self._size()) for support in supports),
         ]
         self._tools = tuple(tool for tool, _ in tools)
+        self._steady, self._down = settings.steady, down(settings.gravity)
         self._led = [pose for _, pose in tools]
         self._borne = [support.pose for support in supports]
         with rest_errors(ValueError):
@@ -229,6 +233,9 @@ class Pile:
         led = enumerate(zip(self._tools, self._led, strict=True))
         return tuple(felt.of_tool(number, tool, pose) for number, (tool, pose) in led)
 
+    def _let_go(self, number: int, placement: Pose) -> NDArray[np.float64] | None:
+        return self._down @ placement.rotation if number in self._steady else None
+
     @property
     def placements(self) -> list[Pose]:
         """Where the frame of each body is in the world."""
@@ -259,6 +266,7 @@ class Pile:
                     native.time,
                     moduli[number],
                     tuple(felt.of_body(other, placements[other]) for other in range(count)),
+                    let_go=self._let_go(number, placements[number]),
                 )
             )
         return tuple(rests)

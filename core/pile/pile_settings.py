@@ -18,6 +18,7 @@ class PileSettings:
     gravity : m/s2, in the world.
     drag_time : seconds, as of one free body (``RestSettings``).
     spacing : metres between contact points of all bodies; None for one that follows the curvature.
+    steady : numbers of bodies that a hand keeps from sliding and turning (``RestSettings``).
     """
 
     friction: float = 0.5
@@ -25,6 +26,7 @@ class PileSettings:
     gravity: tuple[float, float, float] = EARTH
     drag_time: float = 0.05
     spacing: float | None = None
+    steady: tuple[int, ...] = ()
 
 
 USUAL_PILE = PileSettings()

@@ -70,6 +70,7 @@ def native_prop(
             centre=body.inertia.centre,
             inertia=body.moments,
             drag_time=settings.drag_time,
+            is_steady=settings.steady,
             gravity=settings.gravity,
             supports=[_laid(surface, support, reach) for support in supports],
             position=position,

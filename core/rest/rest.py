@@ -71,6 +71,8 @@ class Rest:
     others : soft bodies that touch it, by their numbers in a pile.
     deformed : float64 (n, 3), displacements of its surface nodes by its law, metres; None where
         they are linear.
+    let_go : float64 (3,), the only direction in the body's own frame in which a hand that steadies
+        it lets it go; None without such a hand.
     """
 
     body: SoftBody
@@ -82,6 +84,7 @@ class Rest:
     young_modulus: float
     others: tuple[BodyTouch, ...] = ()
     deformed: Array | None = None
+    let_go: Array | None = None
 
     @property
     def centre(self) -> Array:

@@ -97,6 +97,7 @@ class Resting:
             )
         self._tools = tuple(tool for tool, _ in tools)
         self._supports, self._friction = list(supports), settings.friction
+        self._let_go = settings.let_go
 
     @property
     def bodies(self) -> tuple[SoftBody]:
@@ -264,6 +265,7 @@ class Resting:
             self._native.elastic,
             self._native.time,
             self.young_modulus,
+            let_go=None if self._let_go is None else self._let_go @ placement.rotation,
         )
 
     @property

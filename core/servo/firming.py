@@ -50,8 +50,9 @@ class _Look:
 @dataclass(eq=False)
 class Firming:
     """Follows a servo's touch. ``tool`` is what all its fingers press with, of a pinned body one
-    that slides; of one that nobody holds with ``friction``, and ``supports`` bear it. Snapshots are
-    as the body sees them (``Snapshot.seen_from_body``).
+    that slides; of one that nobody holds with ``friction``, and ``supports`` bear it; where a hand
+    steadies it, it goes along ``let_go`` (3,) in the world alone. Snapshots are as the body sees
+    them (``Snapshot.seen_from_body``).
 
     Between calls of :meth:`follow` a thread may be at work.
 
@@ -64,6 +65,7 @@ class Firming:
     tool: Tool | None = None
     friction: float = 0.0
     supports: Sequence[Floor | Support] = ()
+    let_go: Array | None = None
     _finding: Future[Firmness] | None = None
     _worker: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, "palpate-firmness")
@@ -127,6 +129,7 @@ class Firming:
         them, of one that gives way with time in the end.
         """
         surface, firm = self.body.mesh.surface_nodes, snapshot.firmness
+        let_go = self._let_go(Pose(*snapshot.placement))
         loads = [
             FingerLoad(
                 surface[finger.nodes],
@@ -134,6 +137,7 @@ class Firming:
                 sticks=not len(finger.points),
                 by=self._setting(finger),
                 firmness=firm if self.body.is_free else 1.0,
+                let_go=let_go,
             )
             for finger in snapshot.fingers
             if finger.touching and len(finger.nodes)
@@ -170,6 +174,7 @@ class Firming:
                 forces[own],
                 by=Setting(*one, self.body, support.friction),
                 firmness=snapshot.firmness,
+                let_go=self._let_go(placement),
             )
             for number, (one, support) in enumerate(zip(by, self.supports, strict=True))
             if (own := nearest == number).any()
@@ -180,6 +185,9 @@ class Firming:
             return None
         pose = Pose(finger.proxy, finger.orientation)
         return Setting(self.tool, pose, self.body, self.friction)
+
+    def _let_go(self, placement: Pose) -> Array | None:
+        return None if self.let_go is None else self.let_go @ placement.rotation
 
     def close(self) -> None:
         """End; does not wait."""

@@ -58,11 +58,16 @@ def _setting(touch: PointTouch | ToolTouch) -> Setting | None:
     return Setting(touch.tool, touch.pose, touch.body) if slides else None
 
 
-def held_loads(body: SoftBody, nodes: NDArray[np.int64], forces: Array) -> list[FingerLoad]:
-    """Loads by which a hand holds nodes (k,) of the mesh where forces (k, 3) hold a linear body."""
+def held_loads(
+    body: SoftBody, nodes: NDArray[np.int64], forces: Array, *, is_held: bool = False
+) -> list[FingerLoad]:
+    """Loads by which a hand holds nodes (k,) of the mesh where forces (k, 3) hold a linear body; of
+    one without pins that ``is_held`` by another hand.
+    """
+    let_go = np.zeros(3) if is_held and body.is_free else None
     part = cells_of(body.mesh.nodes[nodes], MOST_PARTS)
     return [
-        FingerLoad(nodes[part == one], forces[part == one], sticks=True)
+        FingerLoad(nodes[part == one], forces[part == one], sticks=True, let_go=let_go)
         for one in range(int(part.max(initial=-1)) + 1)
     ]
 

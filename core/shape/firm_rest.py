@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
 from ..rest.rest import BodyTouch, Rest
+from .found_behind import FoundBehind
 from .rotation_strain.finger_load import FingerLoad, Footing, Setting, alike
 from .shapes import LinearShape, Shape, pressed_by
 
-# Firmness stays where it changes by less than this share; looks until it does, at most.
-STAYS, MOST_LOOKS = 2e-3, 5
+# Firmness stays where it changes by less than this share; by so much where it is drawn for somebody
+# who waits; looks until it does, at most.
+STAYS, STAYS_IN_HAND, MOST_LOOKS = 2e-3, 0.02, 5
 # By this share loads may differ from those under which a body was looked at.
 ALIKE = 0.01
 # Beyond this share of its size a linear body on its way looks otherwise than its law has it.
@@ -81,14 +83,18 @@ class FirmRest(Generic[Lying]):
     ----------
     lying : the linear ones.
     shapes : of each.
+    in_hand : whether somebody leads what presses them and looks on: on the way they are drawn as
+        they are found in the background meanwhile, which is not the same each time.
     """
 
     lying: Lying
     shapes: Sequence[Shape]
+    in_hand: bool = False
     # Looks that are left.
     _looks: int = field(default=MOST_LOOKS, init=False)
     _changes: tuple[float, ...] = field(default=(), init=False)
     _known: tuple[Rest, ...] | None = field(default=None, init=False)
+    _behind: dict[int, FoundBehind] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         """As firm as each was when it was looked at last."""
@@ -124,7 +130,8 @@ class FirmRest(Generic[Lying]):
             return False
         before, found = self.lying.firmness, self._found()
         changes = tuple(now / last - 1.0 for last, now in zip(before, found, strict=True))
-        stays = is_last or max(map(abs, changes)) <= STAYS
+        enough = STAYS_IN_HAND if self.in_hand else STAYS
+        stays = is_last or max(map(abs, changes)) <= enough
         if stays and rests:
             self._looks, self._changes = MOST_LOOKS, ()
             return True
@@ -190,7 +197,22 @@ class FirmRest(Generic[Lying]):
             return self._known
         lying = self.lying
         every = zip(lying.rests, self.shapes, lying.firmness, strict=True)
-        return tuple(_shown(rest, shape, times) for rest, shape, times in every)
+        if self.in_hand:
+            return tuple(self._found_behind(number, *one) for number, one in enumerate(every))
+        return tuple(_shown(*one) for one in every)
+
+    def _found_behind(self, number: int, rest: Rest, shape: Shape, times: float) -> Rest:
+        loads = _loads(rest, times)
+        if isinstance(shape, LinearShape) or not loads:
+            return rest
+        if number not in self._behind:
+            self._behind[number] = FoundBehind(rest.body, shape, rest.young_modulus / times)
+        return replace(rest, deformed=self._behind[number].now(loads).displacements)
+
+    def close(self) -> None:
+        """End what goes on in the background; does not wait."""
+        for one in self._behind.values():
+            one.close()
 
 
 def settle_firmly(lying: Rests, shapes: Sequence[Shape]) -> tuple[Rest, ...]:
@@ -224,25 +246,28 @@ class _Looked:
         return replace(rest, deformed=self.deformed, elastic=elastic)
 
 
-# What each of the last bodies was seen to be: one that is laid down again where it lay is not
-# looked at.
-_last: dict[SoftBody, _Looked] = {}
-MOST_KEPT = 8
+# What each of the last bodies was seen to be, with tools on it and without: one that is laid down
+# again where it lay is not looked at.
+_last: dict[tuple[SoftBody, bool], _Looked] = {}
+MOST_KEPT = 16
 
 
 def _firmness_of(body: SoftBody, shape: Shape, now: float) -> float:
-    last = _last.get(body)
+    """How firm one begins that is laid down: as when it lay without tools."""
+    last = _last.get((body, False))
     return last.firmness if now == 1.0 and last is not None and last.shape is shape else now
 
 
 def _look_at(rest: Rest, shape: Shape, times: float) -> _Looked:
-    loads, last = _loads(rest, times), _last.get(rest.body)
-    if last is None or last.shape is not shape or not alike(loads, last.loads, ALIKE):
-        _last.pop(rest.body, None)
-        if len(_last) >= MOST_KEPT:
-            del _last[next(iter(_last))]
-        _last[rest.body] = last = _looked(rest, shape, times, loads)
-    return last
+    loads, key = _loads(rest, times), (rest.body, any(len(one.nodes) for one in rest.tools))
+    for one in (_last.get(key), _last.get((rest.body, not key[1]))):
+        if one is not None and one.shape is shape and alike(loads, one.loads, ALIKE):
+            return one
+    _last.pop(key, None)
+    if len(_last) >= MOST_KEPT:
+        del _last[next(iter(_last))]
+    _last[key] = _looked(rest, shape, times, loads)
+    return _last[key]
 
 
 def _looked(rest: Rest, shape: Shape, times: float, loads: list[FingerLoad]) -> _Looked:
@@ -265,7 +290,8 @@ def _shown(rest: Rest, shape: Shape, times: float) -> Rest:
         return rest
     nodes = np.concatenate([one.nodes for one in loads])
     forces = np.concatenate([one.forces for one in loads])
-    return replace(rest, deformed=shape.displacements(nodes, forces, rest.young_modulus / times))
+    modulus = rest.young_modulus / times
+    return replace(rest, deformed=shape.displacements(nodes, forces, modulus, rest.let_go))
 
 
 def _loads(rest: Rest, times: float) -> list[FingerLoad]:
@@ -276,6 +302,7 @@ def _loads(rest: Rest, times: float) -> list[FingerLoad]:
             touch.nodal_forces / times,
             by=_setting(rest, touch),
             firmness=times,
+            let_go=rest.let_go,
         )
         for touch in rest.touches
         if len(touch.nodes)
@@ -287,4 +314,6 @@ def _setting(rest: Rest, touch: BodyTouch) -> Setting | None:
         return None
     moved = rest.placement.to_tool(touch.places) - touch.at_rest
     footing = Footing(touch.at_rest, moved, touch.pushes)
-    return Setting(*touch.by, rest.body, touch.friction, footing)
+    # What a hand keeps from sliding no foot needs to hold.
+    friction = touch.friction if rest.let_go is None else 0.0
+    return Setting(*touch.by, rest.body, friction, footing)

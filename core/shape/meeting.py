@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
-from .rotation_strain.finger_load import FingerLoad
+from .rotation_strain.finger_load import FingerLoad, let_go
 from .shapes import LinearShape, Shape, pressed_by
 
 Array = NDArray[np.float64]
@@ -93,7 +93,8 @@ class Meeting:
             return Met(linear, linear, 0.0)
         if self.body.is_free:
             # As a whole it is where what touches it is.
-            return Met(self.shape.displacements(*_joined(loads), 1.0), linear, 0.0)
+            moved = self.shape.displacements(*_joined(loads), 1.0, let_go(fingers))
+            return Met(moved, linear, 0.0)
         wanted = self._places(loads, linear)
         self._recognise(loads, wanted)
         if self._wanted is not None and not self._gave_up:

@@ -63,11 +63,13 @@ class Shape(Protocol):
         nodes: NDArray[np.int64],
         nodal_forces: NDArray[np.float64],
         young_modulus: float | None = None,
+        let_go: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) of the free surface nodes, metres; at once, with what is there.
 
         Arguments as for :meth:`SoftBody.deform`. What a place lacks is asked for: a later call is
-        better, until :attr:`ready` is 1.
+        better, until :attr:`ready` is 1. ``let_go``: the only direction (3,) in which a hand that
+        steadies a body without pins lets it go; none of one that holds it.
         """
         ...
 
@@ -100,6 +102,7 @@ class LinearShape(Shape):
         nodes: NDArray[np.int64],
         nodal_forces: NDArray[np.float64],
         young_modulus: float | None = None,
+        let_go: NDArray[np.float64] | None = None,  # noqa: ARG002 - it is where its mass is
     ) -> NDArray[np.float64]:
         """Linear displacements, as :meth:`SoftBody.deform`."""
         return self.body.deform(nodes, nodal_forces, young_modulus)

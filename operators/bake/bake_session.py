@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import bpy
@@ -19,6 +20,7 @@ from ...core.stiffness.pins import held_at
 from ..carrier import body_source, carrier, seen_mesh
 from ..carrier.seen_mesh import SeenSurface
 from ..layer import live_layer
+from ..lying import standing
 from ..object import baked_record, body_store, kept_body, preview_body, soft_object
 from ..object.embedded_body import embedded
 from ..object.mesh_look import shape_size
@@ -204,9 +206,9 @@ def start(
 
     Parameters
     ----------
-    by_hand : somebody looks on. An object without a body is held by its core if nobody chose its
-        pins and it stands on a slender foot, and given a coarse body, too, if it is expected to
-        wait for longer than a preview takes.
+    by_hand : somebody looks on. If nobody chose its pins, an object without a body rests where it
+        stands, or is held by its core on a slender foot; and it is given a coarse body, too, if it
+        is expected to wait for longer than a preview takes.
     rebuild : only recompute the compliance, from the tetrahedra in the .blend with the present
         pins and material.
 
@@ -224,7 +226,10 @@ def start(
         raise PalpateError(soft_object.refusal(thing))
     drawn = (body_source.read_again if rebuild else body_source.read)(thing, scene)
     is_first = not rebuild and not thing.palpate.body_key
-    told = unchosen_pins.choose(thing, drawn, by_hand=by_hand) if is_first else None
+    told = None
+    if is_first:
+        stands = partial(standing.stands, thing, drawn, scene)
+        told = unchosen_pins.choose(thing, drawn, by_hand=by_hand, stands=stands)
     surface = drawn.surface()
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))
     settings = bake_prediction.all_settings_of(thing, drawn)

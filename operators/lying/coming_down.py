@@ -19,9 +19,10 @@ from ...core.servo.session import Body, Prop
 from ..object.drawn_body import DrawnBody, open_body
 from ..played import mesh_cache
 from . import rest_layer
-from .free_body import LANDING, FreeBody, Lying, lie, supports_under
+from .free_body import FreeBody, Lying, lie, supports_under
 from .free_pile import FreePile, piled
 from .laid import is_animated, lay
+from .standing import LANDING
 from .supports import Supports
 from .together import together
 
@@ -79,6 +80,14 @@ class Alone:
         """
         (placement,) = placements or self.placements
         return Alone(self.free.touched_by(tools, placement))
+
+    def take_in_hand(self) -> None:
+        """Somebody leads what presses it, and looks on."""
+        self.free.firm.in_hand = True
+
+    def close(self) -> None:
+        """End what goes on in the background."""
+        self.free.firm.close()
 
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals."""
@@ -163,8 +172,8 @@ def begun(
 def come_together(
     thing: bpy.types.Object, drawn: DrawnBody, graph: bpy.types.Depsgraph
 ) -> tuple[list[bpy.types.Object], Alone | FreePile]:
-    """An object whose body is open and all soft ones that it rests on, in this order; and their
-    bodies as of :func:`begun`.
+    """An object that will be pressed, whose body is open, and all soft ones that it rests on, in
+    this order; and their bodies as of :func:`begun`, the first one steadied if it is to be.
 
     Raises
     ------
@@ -173,7 +182,8 @@ def come_together(
     """
     things = together(thing, ())
     opened = [drawn, *(open_body(other, graph.scene) for other in things[1:])]
-    return things, lying_bodies(things, opened, graph, LANDING)
+    steady = thing.palpate.steady
+    return things, lying_bodies(things, opened, graph, LANDING, steady=steady)
 
 
 def lying_bodies(
@@ -183,9 +193,10 @@ def lying_bodies(
     height: float,
     *,
     fingertips: Sequence[Tool] | None = None,
+    steady: bool = False,
 ) -> Alone | FreePile:
-    """The same of bodies that are open; those for a servo, whose ``fingertips`` are told, are
-    touched at no more points than it has time for.
+    """The same of bodies that are open, the first one kept ``steady`` by a hand; those for a servo,
+    whose ``fingertips`` are told, are touched at no more points than it has time for.
 
     Raises
     ------
@@ -196,9 +207,10 @@ def lying_bodies(
         if thing.palpate.pin_mode == "NONE":
             refuse_played(thing)
     if len(things) > 1:
-        return piled(things, opened, graph, height, fingertips or ())
+        return piled(things, opened, graph, height, fingertips or (), steady=steady)
     (thing,), (drawn,) = things, opened
-    free = lie(thing, drawn, supports_under(thing, drawn, graph), for_servo=fingertips is not None)
+    supports, for_servo = supports_under(thing, drawn, graph), fingertips is not None
+    free = lie(thing, drawn, supports, for_servo=for_servo, steady=steady)
     free.drop(height * drawn.size)
     return Alone(free)
 

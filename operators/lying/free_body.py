@@ -22,23 +22,14 @@ from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
 from ...core.shape.firm_rest import FirmRest
-from ...core.shape.shapes import shape_name
-from ..layer import layers, stack
 from ..object.drawn_body import DrawnBody
-from ..played import mesh_cache
 from ..scene.body_frame import BodyFrame
-from ..shape.drawn_shape import chosen_shape, kept_shape
+from ..shape.drawn_shape import kept_shape
 from .placement import frame_at, placement_of
+from .standing import HEAP, LANDING, limpness, refusal, scene_gravity
 from .supports import Supports, supports_of
 
 Array = NDArray[np.float64]
-
-# Share of its size over what bears it at which a body that falls is looked at again.
-LANDING = 0.05
-
-# Weight over stiffness, rho g h / E, beyond which a body is a heap: the foot of a block of twice
-# that would be pressed to nothing if it gave way as a linear one, and it falls over before.
-HEAP = 0.5
 
 # Of each body the one at other constants than its file tells: much is kept with that.
 _chosen: WeakKeyDictionary[SoftBody, SoftBody] = WeakKeyDictionary()
@@ -168,9 +159,11 @@ def lie(
     placement: Pose | None = None,
     *,
     for_servo: bool = False,
+    steady: bool = False,
 ) -> FreeBody:
     """A free body where its object is, or at a ``placement``; poses of tools are in the world. One
-    ``for_servo`` is touched at no more points than the servo has time for.
+    ``for_servo`` is touched at no more points than the servo has time for; a hand keeps one
+    ``steady``.
 
     Raises
     ------
@@ -184,6 +177,7 @@ def lie(
         friction=chosen.static_friction,
         gravity=scene_gravity(bpy.context.scene),
         spacing=even_spacing(body) if for_servo else None,
+        steady=steady,
     )
     resting = Resting(
         body,
@@ -196,12 +190,6 @@ def lie(
     shape = kept_shape(thing, drawn)
     shape.wait_for(drawn.body.mesh.surface_nodes[:1])
     return FreeBody(drawn, supports, settings, FirmRest(resting, [shape]))
-
-
-def scene_gravity(scene: bpy.types.Scene) -> tuple[float, float, float]:
-    """Gravity of a scene, m/s2."""
-    x, y, z = scene.gravity if scene.use_gravity else (0.0, 0.0, 0.0)
-    return float(x), float(y), float(z)
 
 
 def supports_under(
@@ -219,7 +207,7 @@ def supports_under(
         It is pinned or cannot move by itself, too soft to stand, or nothing bears it, with the
         remedy.
     """
-    reason = _refusal(thing)
+    reason = refusal(thing)
     if reason is not None:
         raise reason
     if not drawn.body.is_free:
@@ -227,45 +215,14 @@ def supports_under(
             "{name} is pinned, so it stays where it is; choose Pins: None and press Rebuild Body",
             name=thing.name,
         )
-    if _limpness(thing, drawn, graph.scene) > HEAP:
+    places = placement_of(drawn.frame).to_world(drawn.surface_nodes)
+    if limpness(thing, graph.scene, places) > HEAP:
         raise PalpateError(
             "{name} is too soft for its size: it would sink into a heap by its weight; choose a "
             "firmer or lighter Material, make it smaller, or choose other Pins",
             name=thing.name,
         )
     return supports_of(thing, drawn, graph, besides=besides)
-
-
-def _limpness(thing: bpy.types.Object, drawn: DrawnBody, scene: bpy.types.Scene) -> float:
-    """Of an object as it stands, rho g h / E."""
-    pull = np.array(scene_gravity(scene))
-    heights = placement_of(drawn.frame).to_world(drawn.surface_nodes) @ pull
-    chosen = thing.palpate
-    return chosen.density * float(np.ptp(heights)) / chosen.young_modulus
-
-
-def _refusal(thing: bpy.types.Object) -> PalpateError | None:
-    """Reason why an object cannot move by itself."""
-    if thing.parent is not None or any(one.enabled for one in thing.constraints):
-        return PalpateError(
-            "{name} is moved by its parent or a constraint, and cannot lie by itself; clear them, "
-            "or choose other Pins",
-            name=thing.name,
-        )
-    if shape_name(chosen_shape(thing)) == "paper":
-        return PalpateError(
-            "{name}: without pins it has no tables of the paper's; choose Real under Large "
-            "Deformation",
-            name=thing.name,
-        )
-    posing = [kind for kind in stack.following(thing, layers.made_by(thing)) if kind in stack.POSES]
-    if posing and not mesh_cache.plays(thing):
-        return PalpateError(
-            "{name} is posed by its modifiers, and rests as it was made; hide them, or choose "
-            "other Pins",
-            name=thing.name,
-        )
-    return None
 
 
 def chosen_body(body: SoftBody, density: float, young_modulus: float | None = None) -> SoftBody:

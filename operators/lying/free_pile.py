@@ -24,8 +24,9 @@ from ...core.servo.session import Body, PropAmong
 from ...core.shape.firm_rest import FirmRest
 from ..object.drawn_body import DrawnBody
 from ..shape.drawn_shape import kept_shape
-from .free_body import Lying, chosen_body, scene_gravity, supports_under
+from .free_body import Lying, chosen_body, supports_under
 from .placement import frame_at, placement_of
+from .standing import scene_gravity
 from .supports import Supports
 
 
@@ -100,6 +101,14 @@ class FreePile:
         pile.come_in()
         return replace(self, supports=borne, firm=FirmRest(pile, self.firm.shapes))
 
+    def take_in_hand(self) -> None:
+        """Somebody leads what presses them, and looks on."""
+        self.firm.in_hand = True
+
+    def close(self) -> None:
+        """End what goes on in the background."""
+        self.firm.close()
+
     def lead(self, goals: Sequence[Pose]) -> None:
         """Have the tools go to their goals."""
         self.firm.lead(goals)
@@ -168,10 +177,12 @@ def piled(
     graph: bpy.types.Depsgraph,
     height: float | None = None,
     fingertips: Sequence[Tool] = (),
+    *,
+    steady: bool = False,
 ) -> FreePile:
     """Bodies of objects where these are, with the floor and colliders of all; where nothing is
     near beneath, down at a ``height`` over it, a share of the smallest one's size, if there is one.
-    ``fingertips`` are those of a servo which will press them.
+    ``fingertips`` are those of a servo which will press them. A hand keeps the first ``steady``.
 
     Friction between them is the first one's, and so is that of tools; the floor the lowest of
     theirs.
@@ -200,7 +211,10 @@ def piled(
         bodies.append(chosen_body(drawn.body, chosen.density, chosen.young_modulus))
     first = things[0].palpate
     settings = PileSettings(
-        friction=first.rest_friction, tool_friction=first.static_friction, gravity=gravity
+        friction=first.rest_friction,
+        tool_friction=first.static_friction,
+        gravity=gravity,
+        steady=(0,) if steady else (),
     )
     laid = list(zip(bodies, placements, strict=True))
     pile = Pile(laid, supports.all, fingertips=fingertips, settings=settings)

@@ -1,6 +1,10 @@
-"""Pins of an object whose pins nobody has chosen: its pin group, or its core on a slender foot."""
+"""Pins of an object whose pins nobody has chosen: its pin group; none where it stands; or its core
+on a slender foot.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import bpy
 import numpy as np
@@ -17,10 +21,18 @@ SLENDER = 1.2
 DIRECTIONS = 36
 
 
-def choose(thing: bpy.types.Object, surface: DrawnSurface, *, by_hand: bool) -> Sentence | None:
-    """Choose the pins of an object if nobody has: the vertex group of that name, if it has one, or,
-    where somebody looks on (``by_hand``), its core if its foot is slender; what is to be told of
-    that.
+def choose(
+    thing: bpy.types.Object,
+    surface: DrawnSurface,
+    *,
+    by_hand: bool,
+    stands: Callable[[], bool],
+) -> Sentence | None:
+    """Choose the pins of an object if nobody has; what is to be told of that.
+
+    It is the vertex group of that name, if it has one. Where somebody looks on (``by_hand``), one
+    that ``stands`` rests there, steadied by a hand; another one is held by its core if its foot is
+    slender.
     """
     settings = thing.palpate
     if settings.is_property_set("pin_mode") or settings.is_property_set("pin_fraction"):
@@ -31,6 +43,13 @@ def choose(thing: bpy.types.Object, surface: DrawnSurface, *, by_hand: bool) -> 
             "{name} is pinned by its vertex group {group}. Pins chooses otherwise",
             name=thing.name,
             group=settings.pin_group,
+        )
+    if by_hand and stands():
+        settings.pin_mode, settings.steady = "NONE", True
+        return Sentence(
+            "{name} rests on its floor, and a hand steadies it while you press. Pins chooses "
+            "otherwise",
+            name=thing.name,
         )
     if not (by_hand and is_slender(surface, settings.pin_fraction)):
         return None

@@ -67,8 +67,9 @@ class ForceLoop:
     _led: dict[int, tuple[Point | None, Turn | None]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        supports = () if self.prop is None else self.prop.supports
-        self.firming = Firming(self.servo, self.drawn.body, supports=supports)
+        self.firming = Firming(self.servo, self.drawn.body)
+        if self.prop is not None:
+            self.firming.supports, self.firming.let_go = self.prop.supports, self.prop.let_go
         self._tell_tool()
 
     @classmethod

@@ -28,8 +28,9 @@ class Laid:
     body: SoftBody
     native: Body
 
-    def settings(self, friction=0.0, turn=UPRIGHT, gravity=INTO_CORNER):
-        return RestSettings(friction=friction, gravity=tuple(turn.apply(gravity)), spacing=0.013)
+    def settings(self, friction=0.0, turn=UPRIGHT, gravity=INTO_CORNER, steady=False):
+        pull = tuple(turn.apply(gravity))
+        return RestSettings(friction=friction, gravity=pull, spacing=0.013, steady=steady)
 
     def corner(self, friction=0.0, turn=UPRIGHT):
         return [Floor(friction=friction, up=tuple(turn.apply(up))) for up in np.eye(3)]
@@ -45,11 +46,12 @@ class Laid:
         gravity=INTO_CORNER,
         max_force=None,
         relaxation=(),
+        steady=False,
     ):
         """Fingers of the servo, the first of which begins at ``start``, before the world is turned;
         without a ``max_force`` they have no motors.
         """
-        settings = self.settings(friction, turn, gravity)
+        settings = self.settings(friction, turn, gravity, steady)
         if floors is None:
             floors = self.corner(friction, turn)
         placement = Pose(np.zeros(3), turn.as_matrix())

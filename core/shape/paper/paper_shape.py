@@ -67,6 +67,7 @@ class PaperShape:
         nodes: NDArray[np.int64],
         nodal_forces: NDArray[np.float64],
         young_modulus: float | None = None,
+        let_go: NDArray[np.float64] | None = None,  # noqa: ARG002 - of bodies that pins hold
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) of the free surface nodes, metres; see :class:`.shapes.Shape`.
 

@@ -49,7 +49,8 @@ class FingerLoad:
 
     ``sticks``: a point, which moves its place by all of its way; a tool's places may slide. ``by``:
     the tool, where it is known; of a pinned body one that slides. ``firmness``: how many times as
-    firm the body was under it, which tells what it weighs beside its forces.
+    firm the body was under it, which tells what it weighs beside its forces. ``let_go``: the only
+    direction (3,) in which a hand that steadies the body lets it go; none of one that holds it.
     """
 
     nodes: NDArray[np.int64]
@@ -57,6 +58,7 @@ class FingerLoad:
     sticks: bool = False
     by: Setting | None = None
     firmness: float = 1.0
+    let_go: Array | None = None
 
     def times(self, share: float) -> FingerLoad:
         """With so much of its forces."""
@@ -88,7 +90,7 @@ def alike(loads: Sequence[FingerLoad], others: Sequence[FingerLoad], share: floa
     share of all of them.
     """
     return len(loads) == len(others) and all(
-        one.sticks == other.sticks
+        (one.sticks, one.let_go is None) == (other.sticks, other.let_go is None)
         and np.array_equal(one.nodes, other.nodes)
         and meet_alike(one.by, other.by)
         and abs(one.firmness - other.firmness) <= share * one.firmness
@@ -103,7 +105,8 @@ def are_near(loads: Sequence[FingerLoad], others: Sequence[FingerLoad]) -> bool:
 
 
 def _is_near(one: FingerLoad, other: FingerLoad) -> bool:
-    if one.sticks != other.sticks or not meet_alike(one.by, other.by):
+    are_held = (one.let_go is None) == (other.let_go is None)
+    if one.sticks != other.sticks or not (are_held and meet_alike(one.by, other.by)):
         return False
     shared = len(np.intersect1d(one.nodes, other.nodes))
     return shared >= SHARED * min(len(one.nodes), len(other.nodes))
@@ -114,3 +117,8 @@ def meet_alike(one: Setting | None, other: Setting | None) -> bool:
     if one is None or other is None:
         return one is other
     return one.tool is other.tool and one.body is other.body
+
+
+def let_go(loads: Sequence[FingerLoad]) -> Array | None:
+    """The only direction (3,) in which a body under these may go; None where it may anyhow."""
+    return next((load.let_go for load in loads if load.let_go is not None), None)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
 from .beside.beside_tools import beside_tools, between_tools
-from .finger_load import FingerLoad, on_free_nodes, totals
+from .finger_load import FingerLoad, let_go, on_free_nodes, totals
 from .linear_press import LinearPress
 from .pressed import LINEAR, Firmness, Found, Pressed, blended, through
 from .relaxation import Relaxation, Rest
@@ -123,8 +123,9 @@ class FirmBody:
         if kept_out is None or kept_out.trust == 0.0:
             return replace(led, found=found)
         # What its weight alone presses answers with that, however firm it is.
-        sums = totals(loads)
-        weight = float(np.linalg.norm(sums.sum(axis=0)) / np.linalg.norm(sums, axis=1).sum())
+        sums, only = totals(loads), let_go(loads)
+        left = sums.sum(axis=0) if only is None else only * (sums.sum(axis=0) @ only)
+        weight = float(np.linalg.norm(left) / np.linalg.norm(sums, axis=1).sum())
         energy = kept_out.energy
         share = (1.0 - weight) * kept_out.share + weight * known.at(energy)
         half = HALF * HALF * energy

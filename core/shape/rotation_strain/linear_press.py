@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solid.free_solid import FreeSolid
-from .finger_load import FingerLoad, on_free_nodes
+from .finger_load import FingerLoad, let_go, on_free_nodes
 from .lying import met
 from .relaxation import Patterns
 
@@ -34,6 +34,7 @@ class LinearPress:
     farthest : way of a node, metres.
     is_of_tools : and of no point.
     forces, linear : (f, 3), all of them, and the linear displacement.
+    only : the direction (3,) in which alone a hand lets the body go.
     """
 
     patterns: Patterns
@@ -44,6 +45,7 @@ class LinearPress:
     is_of_tools: bool
     forces: Array
     linear: Array
+    only: Array | None
 
     @classmethod
     def of(
@@ -78,13 +80,14 @@ class LinearPress:
         ways: Array = np.einsum("pfi,fi->p", made.forces, linear)
         work, energy = float(ways @ made.response @ ways), 0.5 * float((whole * linear).sum())
         is_of_tools = not any(load.sticks for load in loads)
-        return cls(made, ways, work, energy, _farthest(linear), is_of_tools, whole, linear)
+        far, only = _farthest(linear), let_go(loads)
+        return cls(made, ways, work, energy, far, is_of_tools, whole, linear, only)
 
     def met(self, solid: FreeSolid, moved: Array) -> Array:
         """The body at rest where what touches it is; see :func:`.lying.met`."""
         if solid.motions is None:
             return moved
-        return met(solid.motions.of_nodes, moved, self.linear, self.forces)
+        return met(solid.motions.of_nodes, moved, self.linear, self.forces, self.only)
 
     def swings(self, moved: Array, depth: float) -> bool:
         """Whether a body led by tools to a share ``depth`` goes far beyond that, as a wing does."""

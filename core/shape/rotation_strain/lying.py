@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...compliance.free_body.inertia import RigidMotions
 from ..solid.free_solid import FreeSolid
 from .beside.held_aside import sliding
-from .finger_load import FingerLoad, on_free_nodes
+from .finger_load import FingerLoad, let_go, on_free_nodes
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,9 @@ RIDGE = 1e-6
 RESISTED, READILY = 0.1, 100.0
 
 
-def met(modes: Array, moved: Array, linear: Array, forces: Array) -> Array:
+def met(
+    modes: Array, moved: Array, linear: Array, forces: Array, only: Array | None = None
+) -> Array:
     """Displacements (f, 3), moved as a whole until what is pressed is where it is linearly.
 
     By least squares, along the forces and weighed by them; a motion along which there is none stays
@@ -35,7 +37,10 @@ def met(modes: Array, moved: Array, linear: Array, forces: Array) -> Array:
     moved : (f, 3), without rigid motion.
     linear : (f, 3), the linear displacements.
     forces : (f, 3), under which they are.
+    only : the direction (3,) in which alone a hand lets it go; none of one that is held.
     """
+    if only is not None:
+        modes = np.broadcast_to(only[:, None], (*moved.shape, 1))
     pressed = np.flatnonzero(forces.any(axis=1))
     if not len(pressed):
         return moved
@@ -45,6 +50,8 @@ def met(modes: Array, moved: Array, linear: Array, forces: Array) -> Array:
     missed = np.sqrt(sizes) * np.einsum("ki,ki->k", along, (linear - moved)[pressed])
     square = rows.T @ rows
     scale = np.trace(square) / len(square)
+    if not scale > 0.0:
+        return moved
     shares = np.linalg.solve(square + RIDGE * scale * np.eye(len(square)), rows.T @ missed)
     return moved + modes @ shares
 
@@ -84,6 +91,10 @@ class Loose:
                 motions.of_nodes[pressed],
                 load.by.friction,
             )
+        only = let_go(loads)
+        if only is not None:
+            along = _shift(motions, only)
+            square = along @ (along.T @ square @ along) @ along.T
         resisted, basis = np.linalg.eigh(square)
         turned = RigidMotions(motions.modes @ basis, motions.loads @ basis)
         size = float(np.linalg.norm(forces, axis=1).sum()) / 2.0
@@ -98,6 +109,13 @@ class Loose:
         modes = self.motions.of_nodes[free]
         found: Array = np.einsum("aiq,q,bjq->abij", modes, self.gives, modes)
         return found
+
+
+def _shift(motions: RigidMotions, way: Array) -> Array:
+    """The shift along a direction (3,) as a share of each motion, (6, 1), of length one."""
+    shares = motions.loads.reshape(-1, 3, 6).sum(axis=0).T @ way
+    found: Array = shares[:, None] / max(float(np.linalg.norm(shares)), np.finfo(float).tiny)
+    return found
 
 
 def _resisted(forces: Array, out: Array, modes: Array, friction: float) -> Array:

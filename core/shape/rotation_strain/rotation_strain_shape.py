@@ -20,7 +20,7 @@ from ..solid.free_solid import FreeSolid
 from .finger_load import FingerLoad, alike, are_near
 from .firmness import FirmBody
 from .lying import met
-from .pressed import LINEAR, Pressed
+from .pressed import LINEAR, Found, Pressed
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
 
@@ -74,6 +74,8 @@ class RotationStrainShape:
         self._is_ended = False
         self._pressing = Lock()
         self._last: tuple[Sequence[FingerLoad], float, Pressed] | None = None
+        # Of so many that touch the last press, from which a near one goes on.
+        self._found: dict[int, tuple[Sequence[FingerLoad], Found | None]] = {}
         worker = ThreadPoolExecutor(1, thread_name_prefix="palpate-rotation-strain")
         self._made: Future[_Made | None] = worker.submit(self._make)
         worker.shutdown(wait=False)
@@ -94,6 +96,7 @@ class RotationStrainShape:
         nodes: NDArray[np.int64],
         nodal_forces: NDArray[np.float64],
         young_modulus: float | None = None,
+        let_go: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) of the free surface nodes, metres; see :class:`.shapes.Shape`.
 
@@ -107,7 +110,7 @@ class RotationStrainShape:
             return self._body.deform(nodes, nodal_forces, young_modulus)
         modulus = self._body.modulus(young_modulus)
         forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
-        return made.displacements(np.asarray(nodes).reshape(-1), forces)
+        return made.displacements(np.asarray(nodes).reshape(-1), forces, let_go)
 
     def pressed(
         self, loads: Sequence[FingerLoad], young_modulus: float, ahead: float = 1.0
@@ -123,8 +126,10 @@ class RotationStrainShape:
             # What is drawn and what is felt are asked for one after the other.
             known = self._last
             if known is None or known[1] != ahead or not alike(known[0], unit):
-                before = known[2].found if known and are_near(known[0], unit) else None
+                near, found = self._found.get(len(unit), ((), None))
+                before = found if are_near(near, unit) else None
                 self._last = known = unit, ahead, made.firm.on_surface(unit, ahead, before)
+                self._found[len(unit)] = unit, known[2].found
             return known[2]
 
     def known(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:
@@ -184,7 +189,10 @@ class _Made(Protocol):
         ...
 
     def displacements(
-        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+        self,
+        nodes: NDArray[np.int64],
+        forces: NDArray[np.float64],
+        let_go: NDArray[np.float64] | None,
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) under forces (k, 3) on nodes (k,), at unit modulus."""
         ...
@@ -198,7 +206,10 @@ class _OnOwnNodes:
     firm: FirmBody
 
     def displacements(
-        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+        self,
+        nodes: NDArray[np.int64],
+        forces: NDArray[np.float64],
+        let_go: NDArray[np.float64] | None,
     ) -> NDArray[np.float64]:
         held = self.solid.on_free_nodes(nodes, forces)
         seen = self.solid.surface
@@ -206,7 +217,7 @@ class _OnOwnNodes:
         if self.solid.motions is None:
             return moved
         linear = self.firm.body.deform(nodes, forces, 1.0)
-        return met(self.solid.motions.of_nodes[seen], moved, linear, held[seen])
+        return met(self.solid.motions.of_nodes[seen], moved, linear, held[seen], let_go)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,9 +228,12 @@ class _OnLattice:
     firm: FirmBody | None = None
 
     def displacements(
-        self, nodes: NDArray[np.int64], forces: NDArray[np.float64]
+        self,
+        nodes: NDArray[np.int64],
+        forces: NDArray[np.float64],
+        let_go: NDArray[np.float64] | None,
     ) -> NDArray[np.float64]:
         linear = self.body.deform(nodes, forces, 1.0)
         places = self.body.free_index(nodes)
         free = places >= 0
-        return self.levels.corrected(linear, places[free], forces[free], self.steps)
+        return self.levels.corrected(linear, places[free], forces[free], self.steps, let_go)

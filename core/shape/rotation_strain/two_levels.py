@@ -99,6 +99,7 @@ class TwoLevels:
         places: NDArray[np.int64],
         forces: NDArray[np.float64],
         steps: int,
+        only: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
         """Displacements (n, 3) of the free surface from linear ones (n, 3).
 
@@ -107,6 +108,7 @@ class TwoLevels:
         linear : what ``forces`` cause where the body stays linear.
         places, forces : (k,), (k, 3), on which of the free surface nodes, at unit modulus.
         steps : towards equilibrium.
+        only : the direction (3,) in which alone a hand lets it go.
         """
         load = self.surface[places].T @ forces
         motions = self.relaxation.motions
@@ -123,7 +125,7 @@ class TwoLevels:
             return moved
         pressed = np.zeros_like(linear)
         np.add.at(pressed, places, forces)
-        return met(self.modes, moved, linear, pressed)
+        return met(self.modes, moved, linear, pressed, only)
 
 
 def _motions(body: SoftBody, lattice: Lattice) -> RigidMotions:

@@ -11,8 +11,10 @@ use glam::{DMat3, DVec3};
 pub struct Mobility {
     /// Centre of mass at rest, m.
     pub centre: DVec3,
-    /// Shift per force, m/N at unit modulus.
+    /// Shift per force along the ways that it may go, m/N at unit modulus.
     pub shift: f64,
+    /// Takes a direction to its part along these ways.
+    pub ways: DMat3,
     /// Turn per torque about the centre, rad/(N m) at unit modulus.
     pub turn: DMat3,
     /// Shift by the weight, m.
@@ -55,7 +57,13 @@ impl Mobility {
     #[inline]
     pub fn between(&self, seen: DVec3, loaded: DVec3) -> DMat3 {
         let [seen, loaded] = [seen, loaded].map(|place| crossing(place - self.centre));
-        DMat3::from_diagonal(DVec3::splat(self.shift)) - seen * self.turn * loaded
+        self.shifts() - seen * self.turn * loaded
+    }
+
+    /// How forces shift it, m/N at unit modulus.
+    #[inline]
+    pub(crate) fn shifts(&self) -> DMat3 {
+        self.ways * self.shift
     }
 
     /// How unit forces along the axes turn it, at a place so far from its centre, rad/N at unit modulus.
@@ -73,7 +81,7 @@ impl Mobility {
         }
         Motion {
             centre: self.centre,
-            shift: self.drift + sum * self.shift,
+            shift: self.drift + self.ways * (sum * self.shift),
             turn: self.turn * torque,
         }
     }
@@ -81,7 +89,8 @@ impl Mobility {
     /// Whether forces move the body alike: by another weight at most.
     #[inline]
     pub fn is_alike(&self, other: &Self) -> bool {
-        (self.centre, self.shift, self.turn) == (other.centre, other.shift, other.turn)
+        (self.centre, self.shift, self.turn, self.ways)
+            == (other.centre, other.shift, other.turn, other.ways)
     }
 }
 

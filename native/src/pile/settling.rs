@@ -58,10 +58,8 @@ impl Settles for Pile {
         let mut most = 0.0_f64;
         for (body, member) in self.members.iter().enumerate() {
             let Some(free) = member.free else { continue };
-            let (mut force, mut torque) = (
-                member.placement.direction_to_body(self.gravity) * free.mass,
-                DVec3::ZERO,
-            );
+            let gravity = member.placement.direction_to_body(self.gravity);
+            let (mut force, mut torque) = (gravity * free.mass, DVec3::ZERO);
             let turn = member.placement.rotation.inverse();
             let presses = |contact: &&Contact| contact.push > 0.0;
             for contact in self.contacts().iter().filter(presses) {
@@ -72,6 +70,7 @@ impl Settles for Pile {
                     torque += (at - free.centre).cross(own * share);
                 }
             }
+            let (force, torque) = free.untaken(gravity, (force, torque));
             let size = member.body().size();
             most = most.max(force.length()).max(torque.length() / size);
         }

@@ -26,12 +26,12 @@ use crate::tool::coefficients::Friction;
 use crate::tool::points::touchable::Touchable;
 
 /// A body: its contact points, those of hands if they are others, Young's modulus, mass, centre, moments
-/// of inertia and drag time, if it is free, and where its frame is.
+/// of inertia, drag time and whether a hand steadies it, if it is free, and where its frame is.
 type Laid<'py> = (
     PyRef<'py, ToolSurface>,
     Option<PyRef<'py, ToolSurface>>,
     f64,
-    Option<(f64, Triple, Rows, f64)>,
+    Option<(f64, Triple, Rows, f64, bool)>,
     Triple,
     Rows,
 );
@@ -215,12 +215,13 @@ impl Pile {
 
 fn member((surface, closer, modulus, free, position, rotation): Laid<'_>) -> PyResult<Member> {
     let free = free
-        .map(|(mass, centre, inertia, drag_time)| {
+        .map(|(mass, centre, inertia, drag_time, is_steady)| {
             let free = FreeBody {
                 mass,
                 centre: finite("centre", centre)?,
                 inertia: matrix(inertia),
                 drag_time,
+                is_steady,
             };
             if free.is_sound() {
                 Ok(free)

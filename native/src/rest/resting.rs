@@ -207,10 +207,11 @@ impl Settles for Resting {
     }
 
     fn left(&self) -> f64 {
-        let weight = self.prop.gravity * self.prop.free.mass;
+        let gravity = (self.prop.placement).direction_to_body(self.prop.gravity);
         let (force, torque) = self.wrench();
-        let left = force + self.prop.placement.direction_to_body(weight);
-        left.length().max(torque.length() / self.prop.body.size())
+        let wrench = (force + gravity * self.prop.free.mass, torque);
+        let (force, torque) = self.prop.free.untaken(gravity, wrench);
+        force.length().max(torque.length() / self.prop.body.size())
     }
 
     fn is_led(&self, share: f64) -> bool {

@@ -19,10 +19,11 @@ from ...object.drawn_body import DrawnBody, open_body
 from ...scene.body_frame import BodyFrame
 from ..before import Before
 from ..coming_down import Alone, lying_bodies, show
-from ..free_body import LANDING, Lying
+from ..free_body import Lying
 from ..free_pile import FreePile
 from ..laid import lay, move
 from ..placement import apart, frame_at, placement_of
+from ..standing import LANDING
 from ..together import together
 from .neighbour import MOVED, Neighbour, neighbour
 
@@ -70,7 +71,8 @@ class PressedProp:
         things = [thing] if tool is None else together(thing, chosen)[:MOST_BODIES]
         opened = [drawn, *(open_body(one, graph.scene) for one in things[1:])]
         fingertips = () if tool is None else (tool,)
-        coming = lying_bodies(things, opened, graph, LANDING, fingertips=fingertips)
+        steady = thing.palpate.steady
+        coming = lying_bodies(things, opened, graph, LANDING, fingertips=fingertips, steady=steady)
         rested, *lying = coming.settle()
         first, *bodies = coming.bodies
         others = zip(things[1:], opened[1:], bodies, lying, strict=True)
@@ -101,6 +103,12 @@ class PressedProp:
     def supports(self) -> Sequence[Floor | Support]:
         """All that bears the body, where no other soft one does."""
         return self._coming.supports.all if isinstance(self._coming, Alone) else ()
+
+    @property
+    def let_go(self) -> NDArray[np.float64] | None:
+        """Direction in the world in which alone a hand that steadies it lets it go."""
+        rest = self._rested.rest
+        return None if rest.let_go is None else rest.placement.rotation @ rest.let_go
 
     @property
     def native(self) -> tuple[Body, Prop | PropAmong]:

@@ -48,6 +48,7 @@ class FreePush:
         off = 2.0 * float(np.linalg.norm(rested.displacements, axis=1).max()) + AIR * drawn.size
         starts = [(tips.tool, rested.in_world(tips.pose(grip, -off))) for grip in grips]
         free = alone.touched_by(starts)
+        free.take_in_hand()
         free.settle()
         return cls(tips, rested, free)
 

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.errors import PalpateError
-from ....core.grip.held_patch import HeldPatch
 from ....core.grip.patch import Grip
 from ....core.rest.refusals import RestlessError, SwallowedError
 from ...lying.before import Before
@@ -40,7 +39,8 @@ class FreeStroke:
 
     A push is that of fingertips, and a pinch draws the surface together: both stay as a layer.
     Grab, Twist and pull take hold of the object and carry it; let go, it springs back and comes
-    down to rest.
+    down to rest. Where a hand steadies it, that neither slides nor turns, and they stretch and bend
+    it against that hand, which stays as a layer.
 
     Attributes
     ----------
@@ -58,6 +58,7 @@ class FreeStroke:
     _others: tuple[Lying, ...]
     _coming: Alone | FreePile
     _drawn: DrawnBody
+    _is_steady: bool
     pace, moves = PACE, True
 
     @classmethod
@@ -84,6 +85,7 @@ class FreeStroke:
             tuple(others),
             coming,
             drawn,
+            thing.palpate.steady,
         )
 
     def make_ready(self, thing: bpy.types.Object) -> None:
@@ -114,7 +116,12 @@ class FreeStroke:
                 show([found], [one], self._coming.supports.floor)
 
     def close(self) -> None:
-        """Nothing goes on in the background."""
+        """End what goes on in the background."""
+        made = self.__dict__
+        if "_held" in made:
+            self._held.close()
+        if "_push" in made:
+            self._push.free.close()
 
     def stroked(self, asked: Asked) -> tuple[Asked, Stroked]:
         """Where the body comes to rest under hands that go where they are asked to; and what was
@@ -127,7 +134,7 @@ class FreeStroke:
         """
         hand = self._hand(asked)
         if hand is None:
-            return asked, self._pinched(asked)
+            return self._bent(*self._held.stroked(asked))
         try:
             for part in range(1, parts := hand.parts(asked)):
                 self._led(hand, asked.part(part / parts))
@@ -140,17 +147,19 @@ class FreeStroke:
                 done, lying = self._led(hand, asked), hand.free.settle()
         except PalpateError as problem:
             raise refusal(hand, problem) from problem
-        return done, self._ending(_stroked(hand, lying), short=done is not asked)
+        stroked = self._in_place(_stroked(hand, lying))
+        return done, self._ending(stroked, short=done is not asked)
 
     def towards(self, asked: Asked) -> tuple[Asked, Stroked]:
         """The same on the way there, as far as the body goes while a picture is drawn."""
         hand = self._hand(asked)
         if hand is None:
-            return asked, self._pinched(asked)
+            return self._bent(*self._held.towards(asked))
         done = self._led(hand, asked)
         for _ in range(TICKS):
             hand.free.tick(TICK)
-        return done, self._ending(_stroked(hand, hand.free.now()), short=done is not asked)
+        stroked = self._in_place(_stroked(hand, hand.free.now()))
+        return done, self._ending(stroked, short=done is not asked)
 
     def ended(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
         """What came of the stroke once all is at rest; of a push as far as it went, where it never
@@ -177,6 +186,18 @@ class FreeStroke:
         except PalpateError:
             return asked, stroked
 
+    def _in_place(self, stroked: Stroked) -> Stroked:
+        """The same of an object that lies where it rested, as one that a hand steadies does again
+        once it is let go: by how far it gave way its surface is moved.
+        """
+        lying, frame = stroked.lying, self.rested.frame
+        if not self._is_steady or lying is None:
+            return stroked
+        before, now = self.rested.rest.placement, lying.rest.placement
+        gone = frame.local_from_body((now.position - before.position) @ before.rotation)
+        moved = lying.moved + np.tile(gone.astype(np.float32), len(lying.moved) // 3)
+        return replace(stroked, lying=replace(lying, frame=frame, moved=moved))
+
     def _ending(self, stroked: Stroked, *, short: bool) -> Stroked:
         """With why it fell short."""
         deepest = self._push.deepest if short else None
@@ -198,14 +219,13 @@ class FreeStroke:
             # A pull begins at a depth of -0.
             case Motion.PUSH if math.copysign(1.0, asked.amount) > 0.0:
                 return self._push
-        return self._hold
+        return None if self._is_steady else self._hold
 
-    def _pinched(self, asked: Asked) -> Stroked:
-        answer = self._patch.answer(asked.shares(self.grips[0].normal), self.young_modulus)
-        lying, *others = self._coming.now(answer.displacements)
-        # What draws together is balanced: half of it goes one way.
-        force = 0.5 * float(np.linalg.norm(answer.forces, axis=1).sum()) / len(self.grips)
-        return Stroked(lying.displacements, force, answer.torque, lying=lying, others=tuple(others))
+    def _bent(self, asked: Asked, stroked: Stroked) -> tuple[Asked, Stroked]:
+        """What bends it where it lies, beside how it sags there."""
+        lying, *others = self._coming.now(stroked.displacements)
+        bent = replace(stroked, displacements=lying.displacements)
+        return asked, replace(bent, lying=lying, others=tuple(others))
 
     @cached_property
     def _push(self) -> FreePush:
@@ -226,10 +246,13 @@ class FreeStroke:
         return Alone(lie(thing, self._drawn, supports, (), self.rested.rest.placement))
 
     @cached_property
-    def _patch(self) -> HeldPatch:
-        drawn = self.drawn
-        normals = drawn.node_normals[drawn.body.mesh.surface_nodes]
-        return HeldPatch.of(drawn.body, self.grips, normals)
+    def _held(self) -> Stroke:
+        """What a hand does to a patch, where the body stays where it lies."""
+        thing = self._before[0][0].find()
+        behind = None if thing is None else found_behind(thing, self.drawn)
+        # It is not pushed so, and friction is of pushes.
+        own = self.drawn, self.grips, self.young_modulus, 0.0, behind
+        return Stroke(*own, is_held=self._is_steady)
 
 
 def _stroked(hand: FreePush | FreeHold, all_lying: Sequence[Lying]) -> Stroked:

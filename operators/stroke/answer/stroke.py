@@ -31,7 +31,7 @@ PACE = 1.0 / 30.0
 
 @dataclass(frozen=True, eq=False)
 class Stroke:
-    """Stroke at one place of a body and at its mirror images.
+    """Stroke at one place of a body and at its mirror images, where it lies.
 
     A push is that of a fingertip, by the laws of contact: it only pushes. All else holds a patch
     of the surface (:mod:`....core.grip.held_patch`), and so does a push where no fingertip of this
@@ -45,6 +45,8 @@ class Stroke:
     grips : the place, then its mirror images.
     young_modulus, friction : of the object.
     behind : its shape, where that is no linear one.
+    is_held : whether what does not balance is held by pins or a hand; else a patch is drawn
+        together or apart by forces that do.
     """
 
     drawn: DrawnBody
@@ -52,6 +54,7 @@ class Stroke:
     young_modulus: float
     friction: float
     behind: FoundBehind | None = None
+    is_held: bool = True
 
     @property
     def pace(self) -> float:
@@ -139,7 +142,10 @@ class Stroke:
                 return pushed
         answer = self._held.answer(asked.shares(self.grips[0].normal), self.young_modulus)
         force = float(np.linalg.norm(answer.force))
-        loads = held_loads(self.drawn.body, answer.nodes, answer.forces)
+        if asked.motion is Motion.PINCH:
+            # What draws together is balanced: half of it goes one way.
+            force = 0.5 * float(np.linalg.norm(answer.forces, axis=1).sum()) / len(self.grips)
+        loads = held_loads(self.drawn.body, answer.nodes, answer.forces, is_held=self.is_held)
         return Stroked(answer.displacements, force, answer.torque, loads=tuple(loads))
 
     def _deepest(self, thickness: Thickness) -> Deepest:
@@ -153,7 +159,7 @@ class Stroke:
     def _held(self) -> HeldPatch:
         drawn = self.drawn
         normals = drawn.node_normals[drawn.body.mesh.surface_nodes]
-        return HeldPatch.of(drawn.body, self.grips, normals)
+        return HeldPatch.of(drawn.body, self.grips, normals, is_held=self.is_held)
 
     @cached_property
     def _pushing(self) -> Pushing:

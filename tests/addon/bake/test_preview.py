@@ -21,10 +21,22 @@ from soft_scene import (
 
 @pytest.fixture
 def previewed(palpate, monkeypatch):
-    """A cube, its bake, and its preview, which the bake is not before."""
+    """A cube that is pinned, its bake, and its preview, which the bake is not before."""
+    yield from made_soft_by_hand(monkeypatch, "BELOW")
+
+
+@pytest.fixture
+def standing(palpate, monkeypatch):
+    """The same of one whose pins nobody chose."""
+    yield from made_soft_by_hand(monkeypatch, None)
+
+
+def made_soft_by_hand(monkeypatch, pins):
     bake = part("operators.bake.bake_session")
     monkeypatch.setattr(bake, "QUICK_SECONDS", 0.0)
     thing = cube()
+    if pins is not None:
+        thing.palpate.pin_mode = pins
     session = bake.start(thing, bpy.context.scene, by_hand=True)
     end = time.monotonic() + 60.0
     while not session.preview_off:
@@ -62,6 +74,21 @@ def test_a_preview_is_pressed_and_its_layer_outlives_it(previewed):
     assert layer_names(thing) == ["Press 1"]
     assert mesh_state(thing)["mesh"] == before["mesh"]
     press_down(thing)
+
+
+def test_a_preview_of_what_rests_where_it_stands_is_pushed(standing):
+    thing, session = standing
+    assert thing.palpate.pin_mode == "NONE"
+    top = (0.0, 0.0, 0.025)
+    for _ in range(2):
+        made = bpy.ops.palpate.stroke(place=top, radius=0.012, depth=0.004)
+        assert made == {"FINISHED"}
+        if session is not None:
+            finish(session)
+            session = None
+    assert layer_names(thing) == ["Rests", "Press 1", "Press 2"]
+    # It lies where it stood, but for how it is borne.
+    np.testing.assert_allclose(np.array(thing.location), 0.0, atol=1e-3)
 
 
 def test_a_running_press_goes_on_and_the_fine_body_waits_for_it(previewed):

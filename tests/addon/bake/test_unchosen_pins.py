@@ -61,7 +61,68 @@ def started(thing, **options):
     return session.pins_told
 
 
-def test_who_makes_it_soft_by_hand_has_it_held_by_its_core(pole):
+def test_what_stands_rests_there_for_who_makes_it_soft_by_hand(pole):
+    assert "rests on its floor" in started(pole, by_hand=True)
+    assert pole.palpate.pin_mode == "NONE"
+    assert pole.palpate.steady
+
+
+def hovers(thing):
+    thing.location.z = 1.0
+
+
+def is_too_soft(thing):
+    thing.palpate.young_modulus, thing.palpate.density = 500.0, 2000.0
+
+
+def has_a_parent(thing):
+    thing.parent = bpy.data.objects.new("Parent", None)
+
+
+def is_keyed(thing):
+    thing.keyframe_insert("location")
+
+
+def is_apart(thing):
+    mesh = thing.data.copy()
+    mesh.transform(Matrix.Translation((0.3, 0.0, 0.0)))
+    other = bpy.data.objects.new("Other", mesh)
+    bpy.context.collection.objects.link(other)
+    with bpy.context.temp_override(selected_editable_objects=[thing, other], active_object=thing):
+        bpy.ops.object.join()
+
+
+def lies_on_nothing(thing):
+    thing.palpate.floor = "NONE"
+
+
+@pytest.mark.parametrize(
+    "change", [hovers, is_too_soft, has_a_parent, is_keyed, is_apart, lies_on_nothing]
+)
+def test_what_cannot_rest_where_it_is_is_pinned(change):
+    thing = cube()
+    change(thing)
+    bpy.context.view_layer.update()
+    assert started(select(thing), by_hand=True) is None
+    assert thing.palpate.pin_mode == "BELOW"
+    assert not thing.palpate.steady
+
+
+def test_parts_that_are_in_each_other_rest_as_one():
+    thing = cube()
+    mesh = thing.data.copy()
+    mesh.transform(Matrix.Translation((0.03, 0.0, 0.0)))
+    other = bpy.data.objects.new("Other", mesh)
+    bpy.context.collection.objects.link(other)
+    with bpy.context.temp_override(selected_editable_objects=[thing, other], active_object=thing):
+        bpy.ops.object.join()
+    started(select(thing), by_hand=True)
+    assert thing.palpate.pin_mode == "NONE"
+
+
+def test_who_makes_it_soft_by_hand_has_a_slender_one_in_the_air_held_by_its_core(pole):
+    pole.location.z = 1.0
+    select(pole)
     assert "slender foot" in started(pole, by_hand=True)
     assert pole.palpate.pin_mode == "CORE"
 

@@ -63,7 +63,12 @@ impl Straight {
             parts.fill(0.0);
             if let Some(mobility) = &member.mobility {
                 let turn = mobility.turns(loaded.arm) * way;
-                carry(wrenches, sides.len(), [way * mobility.shift, turn], parts);
+                carry(
+                    wrenches,
+                    sides.len(),
+                    [mobility.shifts() * way, turn],
+                    parts,
+                );
             }
             let slots = &self.slots[..=number];
             add_seen(slots, shares, &self.weights, moved, parts);

@@ -30,7 +30,7 @@ pub struct Prop {
 #[pymethods]
 impl Prop {
     #[new]
-    #[pyo3(signature = (body, *, mass, centre, inertia, drag_time, gravity, supports, position, rotation))]
+    #[pyo3(signature = (body, *, mass, centre, inertia, drag_time, is_steady, gravity, supports, position, rotation))]
     #[expect(clippy::too_many_arguments, reason = "named, all of them, in Python")]
     fn new(
         body: &Body,
@@ -38,6 +38,7 @@ impl Prop {
         centre: Triple,
         inertia: Rows,
         drag_time: f64,
+        is_steady: bool,
         gravity: Triple,
         supports: Vec<Laid<'_>>,
         position: Triple,
@@ -60,6 +61,7 @@ impl Prop {
             centre: finite("centre", centre)?,
             inertia: matrix(inertia),
             drag_time,
+            is_steady,
         };
         if !free.is_sound() {
             return Err(PyValueError::new_err(

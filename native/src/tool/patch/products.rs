@@ -206,12 +206,13 @@ widely! {
 }
 
 widely! {
-    /// Has the first slots be shifted by that much more under forces on the one whose blocks these are,
-    /// and turned as these turn their body now, no more as they did; by where slots were and are from its
+    /// Has the first slots be shifted by that much more along these ways under forces on the one whose
+    /// blocks these are, and turned as these turn their body now, no more as they did; by where slots were and are from its
     /// centre.
     pub(super) fn carry_otherwise(
         blocks: &mut [f64],
         shifts: &[f64],
+        ways: [[f64; 3]; 3],
         arms: [&Vectors; 2],
         turns: [[[f64; 3]; 3]; 2],
     ) {
@@ -229,9 +230,10 @@ widely! {
                     let before = plus_product::<FUSED>(gone[a] * from_b[i], -gone[b], from_a[i]);
                     entry[i] += now - before;
                 }
-                if r == c {
+                let way = ways[c][r];
+                if way != 0.0 {
                     for i in 0..count {
-                        entry[i] += shifts[i];
+                        entry[i] += way * shifts[i];
                     }
                 }
             }

@@ -81,6 +81,7 @@ impl Patch {
             return;
         }
         let [shift, gone] = [now, before].map(|moves| moves.map_or(0.0, |moves| moves.shift));
+        let ways = now.or(before).map_or(DMat3::ZERO, |moves| moves.ways);
         let centre = |moves: Option<Mobility>| moves.map_or(DVec3::ZERO, |moves| moves.centre);
         // Of other bodies' slots all is zero.
         let mut shifts = [0.0; MOST_POINTS];
@@ -102,7 +103,8 @@ impl Patch {
                 turns(now, at(&to, number)),
             ];
             let blocks = &mut self.compliance[blocks_at(number)];
-            carry_otherwise(blocks, &shifts[..=number], [&from, &to], change);
+            let (shifts, ways) = (&shifts[..=number], ways.to_cols_array_2d());
+            carry_otherwise(blocks, shifts, ways, [&from, &to], change);
         }
     }
 }

@@ -28,6 +28,7 @@ fn free() -> FreeBody {
         centre: DVec3::splat(0.025),
         inertia: DMat3::from_diagonal(DVec3::splat(MASS * 0.05 * 0.05 / 6.0)),
         drag_time: 0.05,
+        is_steady: false,
     }
 }
 

@@ -107,3 +107,18 @@ def test_on_a_lattice_it_is_drawn_as_on_its_own_nodes():
         return np.linalg.norm(still[0] - still[1]) / np.linalg.norm(still[1])
 
     assert off(drawn) < 0.5 * off(linear)
+
+
+def test_what_a_hand_steadies_is_moved_in_its_only_direction_or_not_at_all(beam):
+    forces, motion = bending(beam, 0.1), np.array([0.1, 0.2, -0.3, 0.0, 0.2, 0.0])
+    linear, modes = beam.linear(forces), beam.motions.of_nodes
+    away = linear + modes @ motion
+    np.testing.assert_array_equal(met(modes, away, linear, forces, np.zeros(3)), away)
+    up = np.array([0.0, 0.0, 1.0])
+    moved = met(modes, away, linear, forces, up) - away
+    # All alike, until what is pressed, all of it along z, is where it is linearly in the mean.
+    np.testing.assert_allclose(moved, moved[:1].repeat(len(moved), axis=0), atol=1e-15)
+    np.testing.assert_allclose(moved[0, :2], 0.0, atol=1e-15)
+    sizes = np.linalg.norm(forces, axis=1)
+    missed = sizes @ (linear - away - moved)[:, 2]
+    assert abs(missed) < 1e-4 * sizes @ np.abs(linear - away)[:, 2]

@@ -70,7 +70,7 @@ impl System {
             let by = ways / member.young_modulus;
             between.move_by(shares, &by, loaded.last + 1, &mut self.slots);
             let carried = (member.mobility).map_or_else(Carried::default, |mobility| Carried {
-                shift: turned_over(&(ways * mobility.shift)),
+                shift: turned_over(&(mobility.shifts() * ways)),
                 turn: turned_over(&(mobility.turns(loaded.arm) * ways)),
             });
             let memory = [&mut self.moved, &mut self.parts];
