@@ -5,7 +5,7 @@ the hands on it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -96,6 +96,7 @@ class PressedObject:
     prop: PressedProp | None = None
     snapshot: Snapshot | None = None
     places: tuple[TouchedPlace | None, ...] = ()
+    _hands: dict[int, BodyFrame] = field(default_factory=dict)
 
     @property
     def scene(self) -> bpy.types.Scene:
@@ -109,8 +110,12 @@ class PressedObject:
 
     @property
     def hands(self) -> tuple[BodyFrame, ...]:
-        """Frame in which each finger is led: its local one, or the world."""
-        return self.frames if self.prop is None else (self.prop.world,) * len(self.leads)
+        """Frame in which each finger is led: its local one, or the world, moved to where the place
+        is seen.
+        """
+        if self.prop is None:
+            return self.frames
+        return tuple(self._hands.get(one, self.prop.world) for one in range(len(self.leads)))
 
     @property
     def air(self) -> float:
@@ -130,6 +135,8 @@ class PressedObject:
     def touch(self, place: TouchedPlace, thing: bpy.types.Object, finger: int = 0) -> None:
         """Press at a place as it is seen from now on, by one of the fingers."""
         self.places = (*self.places[:finger], place, *self.places[finger + 1 :])
+        if self.prop is not None:
+            self._hands[finger] = self.prop.hand(place)
         self.follow_frame(thing)
 
     def follow_frame(self, thing: bpy.types.Object) -> bool:

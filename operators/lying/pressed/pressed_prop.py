@@ -16,6 +16,7 @@ from ....core.contact.tool.tools import Tool
 from ....core.rest.support import Floor, Support
 from ....core.servo.session import MOST_BODIES, Body, Prop, PropAmong, Snapshot
 from ...object.drawn_body import DrawnBody, open_body
+from ...place.touched_place import TouchedPlace
 from ...scene.body_frame import BodyFrame
 from ..before import Before
 from ..coming_down import Alone, lying_bodies, show
@@ -26,6 +27,9 @@ from ..placement import apart, frame_at, placement_of
 from ..standing import LANDING
 from ..together import together
 from .neighbour import MOVED, Neighbour, neighbour
+
+# Beyond this share of its size a place is seen elsewhere than it lies: layers move it.
+ELSEWHERE = 2e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +92,19 @@ class PressedProp:
     def world(self) -> BodyFrame:
         """Frame in which hands are led, metres."""
         return replace(self.drawn.frame, rotation=np.eye(3), origin=np.zeros(3))
+
+    def hand(self, place: TouchedPlace) -> BodyFrame:
+        """The world as a hand has it that presses a place: moved and turned to where that is seen,
+        if layers show it elsewhere than the body has it.
+        """
+        own = self.drawn.frame
+        (sagged,) = self.drawn.surface_displacements(self._rested.displacements, place.rest[None])
+        lies = place.rest + sagged
+        if np.linalg.norm(place.seen - lies) <= ELSEWHERE * self.drawn.size:
+            return self.world
+        seen = own.posed(place.turn, lies, place.seen)
+        rotation = seen.rotation @ own.rotation.T
+        return replace(self.world, rotation=rotation, origin=seen.origin - rotation @ own.origin)
 
     @property
     def start(self) -> Pose:

@@ -116,3 +116,39 @@ def test_settle_does_not_steady_it(steady_cube):
     # It falls onto a face, which a hand that steadies it would not let it do.
     angle = steady_cube.matrix_world.to_euler().y % (np.pi / 2)
     assert min(angle, np.pi / 2 - angle) < 1e-2
+
+
+def test_a_press_meets_the_surface_where_layers_show_it(steady_cube, tip, sessions, states):
+    """A hand that is over a place that was grabbed feels nothing, and then as much as without."""
+    select(steady_cube)
+    way = (0.004, 0.0, 0.006)
+    made = bpy.ops.palpate.stroke(place=TOP, radius=0.045, motion="GRAB", by=way)
+    assert made == {"FINISHED"}
+    bpy.context.view_layer.update()
+    session = begin(sessions, states, steady_cube)
+    touched = part("operators.place.touched_place")
+    frame = part("operators.scene.drawn_surface").frame_of(steady_cube, bpy.context.scene)
+    over = np.array([TOP[0] + 0.002, TOP[1], 0.1])
+    place = touched.under_ray(steady_cube, frame, over, np.array([0.0, 0.0, -1.0]))
+    assert place.seen[2] - place.rest[2] > 0.0015
+    session.touch(place, steady_cube)
+    hand = session.hands[0]
+    start = hand.body_from_world(
+        frame.world_from_body(place.seen) + np.array([0.0, 0.0, RADIUS + 2e-4])
+    )
+    session.post(states.SetDown(tuple(start), 0))
+    session.tick()
+    assert not session.snapshot.fingers[0].touching
+    down = hand.rotation.T @ [0.0, 0.0, -0.0032]
+    lead(session, states, tuple(start), tuple(down))
+    there = np.linalg.norm(session.snapshot.fingers[0].contact_force)
+    session.post(states.Moment.CANCEL)
+    begin_again = begin(sessions, states, steady_cube)
+    prop = begin_again.prop
+    (sag,) = prop.drawn.surface_displacements(prop._rested.displacements, place.rest[None])
+    start = prop.start.to_world(place.rest + sag) + np.array([0.0, 0.0, RADIUS + 2e-4])
+    lead(begin_again, states, tuple(start), (0.0, 0.0, -0.0032))
+    alone = np.linalg.norm(begin_again.snapshot.fingers[0].contact_force)
+    begin_again.post(states.Moment.CANCEL)
+    assert there == pytest.approx(alone, rel=0.05)
+    assert there > 0.02
