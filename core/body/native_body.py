@@ -50,7 +50,8 @@ def native_body(body: SoftBody, *, whole: bool = False, may_move: bool = False) 
     that no tick reads a file or waits for memory. A ``whole`` body, for several fingers and tools,
     keeps all of it; a mapped table is checked and read into memory here.
 
-    A body without pins is for those who move it as a whole, which ``may_move`` says.
+    A body without pins is for those who move it as a whole, which ``may_move`` says, or have it in
+    a hand (:attr:`SoftBody.in_hand`).
 
     Raises
     ------
@@ -58,7 +59,7 @@ def native_body(body: SoftBody, *, whole: bool = False, may_move: bool = False) 
         A boundary on which a god object cannot walk, or a file that was truncated while in use; a
         body without pins that would not move.
     """
-    if body.is_free and not may_move:
+    if body.is_free and not (may_move or body.in_hand):
         raise PalpateError(
             "the body has no pins and would move away here; lay it on a floor ('palpate settle', "
             "'palpate press' with a tool), or pin it ('palpate pin')"

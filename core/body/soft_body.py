@@ -37,6 +37,8 @@ class SoftBody:
     density : kg/m3, of a free body always; else None where it is not known.
     law : a name of :data:`..law.of_material.LAWS`, by which it gives way at depth. Not baked in.
     older_key : of a body file from before -0.0 was 0.0 for the key; else None.
+    in_hand : whether a hand holds a free body: it does not move as a whole, and what does not
+        balance is carried by its mass.
     """
 
     mesh: TetMesh
@@ -50,6 +52,7 @@ class SoftBody:
     older_key: str | None = None
     density: float | None = None
     law: str = RUBBER
+    in_hand: bool = False
 
     @cached_property
     def key(self) -> str:

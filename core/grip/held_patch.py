@@ -96,7 +96,7 @@ class HeldPatch:
     ) -> HeldPatch:
         """Take hold of the body; ``normals`` (s, 3) are outward at its surface nodes. Where it
         ``is_held``, what does not balance is carried by pins, or by a hand that steadies it. None:
-        as its pins say.
+        as the body says.
 
         Raises
         ------
@@ -120,7 +120,8 @@ class HeldPatch:
         hold = _Hold(
             nodes, places, node_areas(mesh)[held], weights.max(axis=1), _radius(patches), asked
         )
-        forces = hold.forces(body, is_held=not body.is_free if is_held is None else is_held)
+        by_itself = body.in_hand or not body.is_free
+        forces = hold.forces(body, is_held=by_itself if is_held is None else is_held)
         moved = [body.compliance.apply(forces[:, :, number], nodes) for number in range(FIELDS)]
         return cls(
             body,

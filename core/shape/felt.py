@@ -43,10 +43,21 @@ class Felt(Generic[One]):
 def loads_of(touches: Sequence[PointTouch | ToolTouch]) -> list[FingerLoad]:
     """Loads of all fingers that press, by the linear force law."""
     return [
-        FingerLoad(one.nodes, one.nodal_forces, isinstance(one, PointTouch), _setting(one))
+        FingerLoad(
+            one.nodes,
+            one.nodal_forces,
+            isinstance(one, PointTouch),
+            _setting(one),
+            let_go=_let_go(one),
+        )
         for one in touches
         if len(one.nodes)
     ]
+
+
+def _let_go(touch: PointTouch | ToolTouch) -> Array | None:
+    """None at all of a body that is in a hand."""
+    return np.zeros(3) if isinstance(touch, ToolTouch) and touch.body.in_hand else None
 
 
 def _setting(touch: PointTouch | ToolTouch) -> Setting | None:

@@ -17,18 +17,14 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
-from ..rest.rest import BodyTouch, Rest
+from ..rest.rest import Rest
 from .found_behind import FoundBehind
-from .rotation_strain.finger_load import FingerLoad, Footing, Setting, alike
-from .shapes import LinearShape, Shape, pressed_by
+from .rest_looks import firmness_begun, loads_of, look_at, shown
+from .shapes import LinearShape, Shape
 
 # Firmness stays where it changes by less than this share; by so much where it is drawn for somebody
 # who waits; looks until it does, at most.
 STAYS, STAYS_IN_HAND, MOST_LOOKS = 2e-3, 0.02, 5
-# By this share loads may differ from those under which a body was looked at.
-ALIKE = 0.01
-# Beyond this share of its size a linear body on its way looks otherwise than its law has it.
-SEEN = 0.02
 # Ticks of one part of coming to rest, and between two looks.
 TICKS, BETWEEN = 1000, 200
 
@@ -99,7 +95,7 @@ class FirmRest(Generic[Lying]):
     def __post_init__(self) -> None:
         """As firm as each was when it was looked at last."""
         pairs = zip(self.lying.bodies, self.shapes, self.lying.firmness, strict=True)
-        self.lying.firm([_firmness_of(*one) for one in pairs])
+        self.lying.firm([firmness_begun(*one) for one in pairs])
 
     def settle(self) -> tuple[Rest, ...]:
         """Where they come to rest.
@@ -157,7 +153,7 @@ class FirmRest(Generic[Lying]):
     def _found(self) -> tuple[float, ...]:
         """How firm they are found to be where they are now; how they look is known then."""
         every = list(zip(self.lying.rests, self.shapes, self.lying.firmness, strict=True))
-        found = [_look_at(*one) for one in every]
+        found = [look_at(*one) for one in every]
         self._known = tuple(
             one.of(rest, times) for one, (rest, _, times) in zip(found, every, strict=True)
         )
@@ -199,10 +195,10 @@ class FirmRest(Generic[Lying]):
         every = zip(lying.rests, self.shapes, lying.firmness, strict=True)
         if self.in_hand:
             return tuple(self._found_behind(number, *one) for number, one in enumerate(every))
-        return tuple(_shown(*one) for one in every)
+        return tuple(shown(*one) for one in every)
 
     def _found_behind(self, number: int, rest: Rest, shape: Shape, times: float) -> Rest:
-        loads = _loads(rest, times)
+        loads = loads_of(rest, times)
         if isinstance(shape, LinearShape) or not loads:
             return rest
         if number not in self._behind:
@@ -226,94 +222,3 @@ def settle_firmly(lying: Rests, shapes: Sequence[Shape]) -> tuple[Rest, ...]:
     for body, shape in zip(lying.bodies, shapes, strict=True):
         shape.wait_for(body.mesh.surface_nodes[:1])
     return FirmRest(lying, shapes).settle()
-
-
-@dataclass(frozen=True, eq=False)
-class _Looked:
-    """A body by its law under ``loads``: its displacements (n, 3), None of a linear one, how many
-    times as firm it is, and what it holds over what a linear one would.
-    """
-
-    shape: Shape
-    loads: list[FingerLoad]
-    deformed: Array | None
-    firmness: float
-    held: float
-
-    def of(self, rest: Rest, times: float) -> Rest:
-        """The body where it rests ``times`` as firm as its material."""
-        elastic = rest.elastic / times * self.held
-        return replace(rest, deformed=self.deformed, elastic=elastic)
-
-
-# What each of the last bodies was seen to be, with tools on it and without: one that is laid down
-# again where it lay is not looked at.
-_last: dict[tuple[SoftBody, bool], _Looked] = {}
-MOST_KEPT = 16
-
-
-def _firmness_of(body: SoftBody, shape: Shape, now: float) -> float:
-    """How firm one begins that is laid down: as when it lay without tools."""
-    last = _last.get((body, False))
-    return last.firmness if now == 1.0 and last is not None and last.shape is shape else now
-
-
-def _look_at(rest: Rest, shape: Shape, times: float) -> _Looked:
-    loads, key = _loads(rest, times), (rest.body, any(len(one.nodes) for one in rest.tools))
-    for one in (_last.get(key), _last.get((rest.body, not key[1]))):
-        if one is not None and one.shape is shape and alike(loads, one.loads, ALIKE):
-            return one
-    _last.pop(key, None)
-    if len(_last) >= MOST_KEPT:
-        del _last[next(iter(_last))]
-    _last[key] = _looked(rest, shape, times, loads)
-    return _last[key]
-
-
-def _looked(rest: Rest, shape: Shape, times: float, loads: list[FingerLoad]) -> _Looked:
-    if isinstance(shape, LinearShape) or not loads:
-        return _Looked(shape, loads, None, times, times)
-    pressed = pressed_by(shape, loads, rest.young_modulus / times)
-    firmness, deformed = pressed.firmness, pressed.displacements
-    if deformed is None:
-        deformed = _shown(rest, shape, times).deformed
-    return _Looked(shape, loads, deformed, float(firmness.deepest), float(firmness.mean))
-
-
-def _shown(rest: Rest, shape: Shape, times: float) -> Rest:
-    """A body on its way: as its law has it where it is bent so far that it would be seen."""
-    loads = _loads(rest, times)
-    if isinstance(shape, LinearShape) or not loads:
-        return rest
-    linear = rest.displacements()
-    if np.abs(linear).max() < SEEN * float(np.ptp(rest.body.mesh.nodes, axis=0).max()):
-        return rest
-    nodes = np.concatenate([one.nodes for one in loads])
-    forces = np.concatenate([one.forces for one in loads])
-    modulus = rest.young_modulus / times
-    return replace(rest, deformed=shape.displacements(nodes, forces, modulus, rest.let_go))
-
-
-def _loads(rest: Rest, times: float) -> list[FingerLoad]:
-    """Loads of all that touches a body, as on a linear one of its material."""
-    return [
-        FingerLoad(
-            touch.nodes,
-            touch.nodal_forces / times,
-            by=_setting(rest, touch),
-            firmness=times,
-            let_go=rest.let_go,
-        )
-        for touch in rest.touches
-        if len(touch.nodes)
-    ]
-
-
-def _setting(rest: Rest, touch: BodyTouch) -> Setting | None:
-    if touch.by is None:
-        return None
-    moved = rest.placement.to_tool(touch.places) - touch.at_rest
-    footing = Footing(touch.at_rest, moved, touch.pushes)
-    # What a hand keeps from sliding no foot needs to hold.
-    friction = touch.friction if rest.let_go is None else 0.0
-    return Setting(*touch.by, rest.body, friction, footing)

@@ -226,9 +226,8 @@ def start(
         raise PalpateError(soft_object.refusal(thing))
     drawn = (body_source.read_again if rebuild else body_source.read)(thing, scene)
     is_first = not rebuild and not thing.palpate.body_key
-    told = None
+    told, stands = None, partial(standing.stands, thing, drawn, scene)
     if is_first:
-        stands = partial(standing.stands, thing, drawn, scene)
         told = unchosen_pins.choose(thing, drawn, by_hand=by_hand, stands=stands)
     surface = drawn.surface()
     fingerprint = drawn.fingerprint(pin_group.pin_rule(thing), stiff_region.stiff_rule(thing))

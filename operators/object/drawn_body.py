@@ -245,24 +245,6 @@ def _imprinted(body: SoftBody, thing: bpy.types.Object, places: Array, imprint: 
     return imprinted(body, DrawnImprint(places, triangles, imprint))
 
 
-def open_pinned(thing: bpy.types.Object, scene: bpy.types.Scene) -> DrawnBody:
-    """Load an object's body as :func:`open_body`, one that something holds.
-
-    Raises
-    ------
-    PalpateError
-        As there; nothing pins it.
-    """
-    drawn = open_body(thing, scene)
-    if drawn.body.is_free:
-        raise PalpateError(
-            "{name}: nothing pins it, so it would move away under this; push it by a stroke, press "
-            "it by Bake Animation, or choose other Pins",
-            name=thing.name,
-        )
-    return drawn
-
-
 def _stored(thing: bpy.types.Object, status: BodyStatus) -> SoftBody:
     """Body of the object as its file has it.
 

@@ -9,9 +9,10 @@ from ...core.grip.held_patch import HeldPatch
 from ...core.grip.motions import moved
 from ...core.grip.patch import Grip
 from ..layer import place_marks, press_rig
-from ..object.drawn_body import DrawnBody, open_pinned
+from ..object.drawn_body import DrawnBody
 from ..place import touched_place
 from ..reporting.translated import reported
+from ..shape.held_body import open_held
 from .modal_press import Pressing
 
 Array = NDArray[np.float64]
@@ -45,7 +46,7 @@ class PALPATE_OT_add_press_rig(Pressing, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context) -> None:
         thing, scene = context.object, context.scene
-        drawn = open_pinned(thing, scene)
+        drawn = open_held(thing, scene)
         at = np.array(scene.cursor.location if self.use_cursor else self.at)
         with place_marks.marked(thing):
             rest = touched_place.nearest(thing, drawn.frame, at).rest

@@ -8,12 +8,13 @@ import bpy
 
 from ..bake.bake_session import OnSoft
 from ..layer import place_marks
-from ..object.drawn_body import DrawnBody, open_pinned
+from ..object.drawn_body import DrawnBody
 from ..place import touched_place
 from ..reporting.translated import reported, shown
 from ..scene import viewport
 from ..scene.body_frame import Point, as_point
 from ..scene.modal_stay import ModalStay
+from ..shape.held_body import open_held
 
 if TYPE_CHECKING:
 
@@ -39,7 +40,7 @@ class SoftnessOperator(OnSoft, _Operator):
         return self.guarded(lambda: self._pick(context))
 
     def _pick(self, context: bpy.types.Context) -> set[str]:
-        self._drawn = open_pinned(context.object, context.scene)
+        self._drawn = open_held(context.object, context.scene)
         context.window.cursor_modal_set("EYEDROPPER")
         self._stay = ModalStay()
         self._stay.begin(self, context)
@@ -65,7 +66,7 @@ class SoftnessOperator(OnSoft, _Operator):
         return self.execute(context)
 
     def act(self, context: bpy.types.Context) -> None:
-        self.measure(context, open_pinned(context.object, context.scene))
+        self.measure(context, open_held(context.object, context.scene))
 
     def measure(self, context: bpy.types.Context, drawn: DrawnBody) -> None:
         """Measure, store and report."""

@@ -40,11 +40,18 @@ class LyingFrames:
         before, self._around = self._around, around
         if before is None or self._free is None or not around.is_like(before):
             placement = None if self._free is None else self._free.resting.rest.placement
-            self._free = lie(self.thing, self.drawn, around.supports, around.tools, placement)
+            borne = around.supports, around.tools, placement
+            self._free = lie(self.thing, self.drawn, *borne, steady=self._is_steady)
         else:
             follow(self._free.firm, around.ways_from(before), self.seconds)
         self._free.firm.look()
         return lying_frame(self._free.now(), graph)
+
+    @property
+    def _is_steady(self) -> bool:
+        """Whether a hand steadies it, as it does what is pressed."""
+        chosen = self.thing.palpate
+        return bool(chosen.steady and chosen.pressers is not None)
 
     def _around_in(self, graph: bpy.types.Depsgraph) -> Around:
         if self._around is None:

@@ -27,6 +27,7 @@ from ...place.evaluation import evaluated
 from ...press.press_once import pressing_tools
 from ...scene.body_frame import BodyFrame
 from ...scene.drawn_surface import frame_of
+from ...shape.held_body import held
 from .pressers import Presser, pressers_of
 
 # Share of a tool's rounding by which it may differ from frame to frame.
@@ -73,11 +74,7 @@ class AnimatedPress:
             is scaled otherwise here.
         """
         chosen = self.thing.palpate
-        if self.drawn.body.is_free:
-            raise PalpateError(
-                "{name}: nothing pins it, so it moves from frame to frame; press Bake Animation",
-                name=self.thing.name,
-            )
+        self.drawn = held(self.thing, self.drawn)
         self._go_along(graph)
         found = pressers_of(self.thing, graph, self.drawn)
         if self._press is None or not same_tools(found, self._pressers):

@@ -92,3 +92,27 @@ def test_live_pressers_and_other_files_are_refused_with_the_remedy(free_cube, ha
     free_cube.keyframe_insert("location", frame=1)
     assert "keyframes" in error_of(bpy.ops.palpate.press_frames)
     assert mesh_state(free_cube) == before
+
+
+def test_a_hand_steadies_it_under_pressers_live_and_baked(free_cube, hand):
+    """One board alone comes from the side: it is dented and stays where it is."""
+    hand.objects.unlink(hand.objects[0])
+    free_cube.palpate.steady = True
+    bpy.context.scene.frame_set(5)
+    assert not part("operators.animation.failures").reason(free_cube)
+    live = np.abs(seen_places(free_cube) - at_rest_places(free_cube)).max()
+    assert live > 2e-4
+    before = np.array(free_cube.matrix_world)
+    assert bpy.ops.palpate.press_frames() == {"FINISHED"}
+    for frame in range(1, 13):
+        bpy.context.scene.frame_set(frame)
+        now = np.array(free_cube.matrix_world)
+        np.testing.assert_allclose(now[:3, :3], before[:3, :3], atol=1e-5)
+        np.testing.assert_allclose(now[:2, 3], before[:2, 3], atol=1e-5)
+    bpy.context.scene.frame_set(5)
+    assert np.abs(seen_places(free_cube) - at_rest_places(free_cube)).max() > 2e-4
+
+
+def at_rest_places(thing):
+    """Vertices (p, 3) of its own mesh."""
+    return np.array([vertex.co for vertex in thing.data.vertices])

@@ -209,9 +209,25 @@ def test_pins_can_be_given_later_and_taken_away(free_cube):
 
 
 @pytest.mark.parametrize("name", ["read_durometer", "map_softness", "force_curve"])
-def test_what_needs_pins_says_so_and_leaves_nothing(free_cube, name):
+def test_what_needs_a_hand_says_so_and_leaves_nothing(free_cube, name):
     bpy.context.scene.palpate.tip = "SPHERE"
     before = mesh_state(free_cube)
     message = error_of(getattr(bpy.ops.palpate, name))
-    assert "nothing pins it" in message
+    assert "nothing holds it" in message
+    assert "Steady" in message
     assert mesh_state(free_cube) == before
+
+
+def test_with_a_hand_its_softness_is_read(free_cube):
+    """That of a thick block is hardly another where its foot is held."""
+    scene = bpy.context.scene
+    scene.palpate.tip, free_cube.palpate.young_modulus = "SPHERE", 1e5
+    found = []
+    for pins, steady in (("NONE", True), ("BELOW", False)):
+        free_cube.palpate.pin_mode, free_cube.palpate.steady = pins, steady
+        if pins == "BELOW":
+            assert bpy.ops.palpate.update_pins() == {"FINISHED"}
+        assert bpy.ops.palpate.read_durometer(at=(0.002, 0.001, 0.025)) == {"FINISHED"}
+        found.append(free_cube.palpate_softness.read_value)
+    assert found[0] == pytest.approx(found[1], rel=0.05)
+    assert found[0] > 0.0
