@@ -13,7 +13,7 @@ from ...core.contact.tool.tool_surface import surface_and_correction
 from ...core.sentence import Sentence
 from ...core.servo.session import Snapshot
 from ...core.shape.meeting import Met
-from ...core.shape.rotation_strain.finger_load import FingerLoad
+from ...core.shape.rotation_strain.finger_load import FingerLoad, let_go
 from ...core.shape.shapes import Shape
 from ..imprint import kept_imprint
 from ..imprint.kept_imprint import NothingStaysError
@@ -110,7 +110,8 @@ class SeenBody:
         # A finger that was set down elsewhere is told by the last tick where it was before.
         is_past = snapshot.tick <= self._lifted_at
         is_past &= not (len(snapshot.remembered_nodes) or len(snapshot.borne_nodes))
-        self._loads = () if is_past else tuple(loads_of(self.drawn.body, snapshot))
+        found = loads_of(self.drawn.body, snapshot, let_go(self._touch))
+        self._loads = () if is_past else tuple(found)
         self._modulus = young_modulus
         if not self._loads:
             self.displacements = self.linear = None

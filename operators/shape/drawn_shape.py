@@ -202,10 +202,10 @@ def _last_real(body: SoftBody) -> Shape:
     return shape(body, "real")
 
 
-def loads_of(body: SoftBody, snapshot: Snapshot) -> list[FingerLoad]:
-    """Loads under which the body looks as it does."""
+def loads_of(body: SoftBody, snapshot: Snapshot, let_go: Array | None) -> list[FingerLoad]:
+    """Loads under which the body looks as it does; ``let_go`` as of :class:`FingerLoad`."""
     return [
-        FingerLoad(body.mesh.surface_nodes[nodes], forces)
+        FingerLoad(body.mesh.surface_nodes[nodes], forces, let_go=let_go)
         for nodes, forces in drawn_loads(snapshot)
     ]
 

@@ -95,7 +95,9 @@ def test_a_grab_takes_the_patch_as_far_as_the_hand_goes(steady_cube):
     assert np.linalg.norm(mean) < 0.35 * np.linalg.norm(way)
 
 
-def test_a_press_from_the_side_does_not_move_it(steady_cube, tip, sessions, states):
+@pytest.mark.parametrize("shape", ["LINEAR", "REAL"])
+def test_a_press_from_the_side_does_not_move_it(steady_cube, tip, sessions, states, shape):
+    steady_cube.palpate.shape = shape
     before = lying_state(steady_cube)
     session = begin(sessions, states, steady_cube)
     lead(session, states, BESIDE, (-0.006, 0.0, 0.0))
@@ -105,6 +107,9 @@ def test_a_press_from_the_side_does_not_move_it(steady_cube, tip, sessions, stat
     rested = session.prop.start
     np.testing.assert_allclose(turn, rested.rotation, atol=1e-9)
     np.testing.assert_allclose(placement[:2], rested.position[:2], atol=1e-9)
+    # Nor is it drawn turned: what is far from the fingertip hardly moves.
+    far = session.drawn.surface_nodes[:, 0] < 0.0
+    assert np.abs(session.seen.displacements[far]).max() < 2e-3
     session.post(states.Moment.CANCEL)
     assert lying_state(steady_cube) == before
 
