@@ -95,7 +95,7 @@ def test_a_grab_takes_the_patch_as_far_as_the_hand_goes(steady_cube):
     assert np.linalg.norm(mean) < 0.35 * np.linalg.norm(way)
 
 
-@pytest.mark.parametrize("shape", ["LINEAR", "REAL"])
+@pytest.mark.parametrize("shape", ["LINEAR", "ROTATION_STRAIN"])
 def test_a_press_from_the_side_does_not_move_it(steady_cube, tip, sessions, states, shape):
     steady_cube.palpate.shape = shape
     before = lying_state(steady_cube)
