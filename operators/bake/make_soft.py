@@ -8,7 +8,9 @@ from ...core.errors import CancelledError, PalpateError
 from ...core.sentence import Sentence
 from ...core.softness.scales.for_size import material_for
 from ...core.softness.scales.materials import MATERIALS
+from ..lying.free_body import get_ready
 from ..object import soft_object
+from ..object.drawn_body import open_body
 from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..reporting.wait_cursor import wait_cursor
@@ -84,7 +86,20 @@ class BakingOperator(Acting):
         body, report = self._session.commit()
         self._progress.end(context)
         self._tell(self._session.handle.name, body, report)
+        self._get_ready(context.scene)
         return {"FINISHED"}
+
+    def _get_ready(self, scene: bpy.types.Scene) -> None:
+        """Have the first touch wait for less."""
+        thing = self._session.handle.find()
+        if thing is None:
+            return
+        try:
+            drawn = open_body(thing, scene)
+        except PalpateError:
+            # It was changed meanwhile: the panel says so, and who touches it.
+            return
+        get_ready(thing, drawn)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """End with the operator: another file, or exit."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
@@ -16,12 +17,13 @@ from ...core.contact.tool.tool_dent import PressingTool
 from ...core.contact.tool.tools import Tool
 from ...core.contact.touches import ToolTouch
 from ...core.errors import PalpateError
-from ...core.rest.bearing_points import even_spacing
+from ...core.rest.bearing_points import bearing_points, even_spacing
 from ...core.rest.grip import Grip
 from ...core.rest.rest import Rest
 from ...core.rest.rest_settings import RestSettings
 from ...core.rest.resting import Resting
 from ...core.shape.firm_rest import FirmRest
+from ...core.shape.shapes import is_felt
 from ..object.drawn_body import DrawnBody
 from ..scene.body_frame import BodyFrame
 from ..shape.drawn_shape import kept_shape
@@ -30,6 +32,8 @@ from .standing import HEAP, LANDING, limpness, refusal, scene_gravity
 from .supports import Supports, supports_of
 
 Array = NDArray[np.float64]
+
+_worker = ThreadPoolExecutor(1, "palpate-ready")
 
 # Of each body the one at other constants than its file tells: much is kept with that.
 _chosen: WeakKeyDictionary[SoftBody, SoftBody] = WeakKeyDictionary()
@@ -223,6 +227,16 @@ def supports_under(
             name=thing.name,
         )
     return supports_of(thing, drawn, graph, besides=besides)
+
+
+def get_ready(thing: bpy.types.Object, drawn: DrawnBody) -> None:
+    """Prepare in the background what the first touch of an object needs. Does not wait; what goes
+    wrong is told by that touch, which tries again.
+    """
+    if drawn.body.is_free or is_felt(drawn.body):
+        kept_shape(thing, drawn)
+    if drawn.body.is_free:
+        _worker.submit(bearing_points, chosen_body(drawn.body, thing.palpate.density))
 
 
 def chosen_body(body: SoftBody, density: float, young_modulus: float | None = None) -> SoftBody:
