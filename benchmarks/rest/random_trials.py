@@ -1,9 +1,10 @@
 """Free bodies that are dropped, pressed, pinched and lifted anyhow, a thousand times.
 
-    python benchmarks/rest/random_trials.py [--trials 1000] [--first 0] [--pairs]
+    python benchmarks/rest/random_trials.py [--trials 1000] [--first 0] [--pairs | --steady]
 
 What must hold of each is told in ``tests/referees/rest_trials.py``, and with ``--pairs``, one laid
-down on another, in ``pile_trials.py`` there; a trial is known by its seed.
+down on another, in ``pile_trials.py`` there; a trial is known by its seed. With ``--steady`` a hand
+keeps bodies from sliding and turning while others press them.
 The exit status tells whether all of them hold.
 """
 
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 
 from palpate.core.errors import PalpateError
 from palpate.tests.referees.pile_trials import pile_trial
@@ -22,9 +24,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--trials", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, help="seed of the first")
-    parser.add_argument("--pairs", action="store_true", help="one body laid down on another")
+    ways = parser.add_mutually_exclusive_group()
+    ways.add_argument("--pairs", action="store_true", help="one body laid down on another")
+    ways.add_argument("--steady", action="store_true", help="one more hand steadies the body")
     arguments = parser.parse_args()
-    tried = pile_trial if arguments.pairs else trial
+    tried = pile_trial if arguments.pairs else partial(trial, steady=arguments.steady)
     outcomes: dict[str, list[Outcome]] = {kind: [] for kind in KINDS}
     fallen = []
     for seed in range(arguments.first, arguments.first + arguments.trials):

@@ -12,7 +12,7 @@ goes, and where it slides off a hand's edge, round which a force turns by ten de
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 
@@ -174,8 +174,10 @@ def _reach(surface: Array) -> float:
     return float(np.linalg.norm(surface - surface.mean(axis=0), axis=1).max())
 
 
-def trial(seed: int) -> Outcome:
-    """The outcome of the trial with this seed, of the kind ``KINDS[seed % 4]``."""
+def trial(seed: int, *, steady: bool = False) -> Outcome:
+    """The outcome of the trial with this seed, of the kind ``KINDS[seed % 4]``; ``steady`` where one
+    more hand keeps the body from sliding and turning, which takes no work.
+    """
     random = np.random.default_rng(seed)
     body = shapes()[int(random.integers(len(shapes())))]
     rotation = Rotation.random(random_state=random).as_matrix()
@@ -191,7 +193,8 @@ def trial(seed: int) -> Outcome:
     kind = KINDS[seed % len(KINDS)]
     if kind != "settle":
         hands = hands_for(kind, random, rest.surface())
-        resting = Resting(body, floors, hands.tools, placement=rest.placement, settings=settings)
+        held = replace(settings, steady=steady)
+        resting = Resting(body, floors, hands.tools, placement=rest.placement, settings=held)
         (rest,) = tried.go(resting, hands, 1e-3)
         resting = Resting(body, floors, placement=rest.placement, settings=settings)
     _, unborne = tried.left_alone(resting)

@@ -36,3 +36,10 @@ RARELY_THROWN = range(6, 33)
 def test_a_body_in_any_hands_stays_sound(seed):
     outcome = trial(seed)
     assert outcome.holds, outcome
+
+
+# Of each kind with hands one of each of two shapes.
+@pytest.mark.parametrize("seed", [1, 2, 3, 9, 10, 11])
+def test_so_it_does_where_one_more_hand_steadies_it(seed):
+    outcome = trial(seed, steady=True)
+    assert outcome.holds, outcome
