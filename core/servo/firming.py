@@ -167,14 +167,15 @@ class Firming:
         by = [(tool, placement.pose_to_tool(pose)) for tool, pose in laid]
         places = self.body.mesh.nodes[nodes]
         away = [tool.distance(pose.to_tool(places))[0] for tool, pose in by]
-        nearest = np.argmin(away, axis=0)
+        nearest, let_go = np.argmin(away, axis=0), self._let_go(placement)
         return [
             FingerLoad(
                 nodes[own],
                 forces[own],
-                by=Setting(*one, self.body, support.friction),
+                # What a hand keeps from sliding no foot needs to hold.
+                by=Setting(*one, self.body, support.friction if let_go is None else 0.0),
                 firmness=snapshot.firmness,
-                let_go=self._let_go(placement),
+                let_go=let_go,
             )
             for number, (one, support) in enumerate(zip(by, self.supports, strict=True))
             if (own := nearest == number).any()

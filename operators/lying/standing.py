@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -25,9 +27,10 @@ LANDING = 0.05
 # Weight over stiffness, rho g h / E, beyond which a body is a heap: the foot of a block of twice
 # that would be pressed to nothing if it gave way as a linear one, and it falls over before.
 HEAP = 0.5
-# Vertices so near to each other, as a share of the size, are one; and of more parts than this what
-# is apart is not looked for.
+# Vertices so near to each other, as a share of the size, are one; more parts than this are apart.
 SAME, MOST_PARTS = 1e-5, 300
+# Any direction, and how often a ray may meet a surface.
+RAY, MOST_CROSSED = Vector((0.43, 0.61, 0.665)).normalized(), 1000
 
 
 def stands(thing: bpy.types.Object, surface: DrawnSurface, scene: bpy.types.Scene) -> bool:
@@ -69,21 +72,44 @@ def scene_gravity(scene: bpy.types.Scene) -> tuple[float, float, float]:
 
 
 def _is_one(surface: DrawnSurface, size: float) -> bool:
-    """Whether all parts of a surface are near each other, by the boxes around them."""
+    """Whether all loose parts of a surface hang together: they meet, or one is in another."""
     cells = np.round(surface.body / (SAME * size)).astype(np.int64)
     _, number = np.unique(cells, axis=0, return_inverse=True)
     corners = number.reshape(-1)[surface.triangles]
     ends = corners[:, [0, 1]].T, corners[:, [1, 2]].T
     links = _linked(np.concatenate(ends, axis=1).T, int(number.max()) + 1)
     part = connected_components(links, directed=False)[1][corners[:, 0]]
-    parts = np.unique(part)
+    parts = [surface.triangles[part == one] for one in np.unique(part)]
     if not 1 < len(parts) <= MOST_PARTS:
-        return True
-    boxes = [surface.body[surface.triangles[part == one]].reshape(-1, 3) for one in parts]
+        return len(parts) == 1
+    boxes = [surface.body[one].reshape(-1, 3) for one in parts]
     low = np.array([box.min(axis=0) for box in boxes]) - SAME * size
     high = np.array([box.max(axis=0) for box in boxes]) + SAME * size
-    meet = np.argwhere(((low[:, None] <= high) & (low <= high[:, None])).all(axis=2))
-    return connected_components(_linked(meet, len(parts)), directed=False)[0] == 1
+    near = np.argwhere(((low[:, None] <= high) & (low <= high[:, None])).all(axis=2))
+    trees = [BVHTree.FromPolygons(surface.body.tolist(), one.tolist()) for one in parts]
+    meet = [
+        (one, other)
+        for one, other in near.tolist()
+        if one < other
+        and (
+            trees[one].overlap(trees[other])
+            or _is_in(boxes[one][0], trees[other])
+            or _is_in(boxes[other][0], trees[one])
+        )
+    ]
+    pairs = np.array(meet, dtype=np.int64).reshape(-1, 2)
+    return connected_components(_linked(pairs, len(parts)), directed=False)[0] == 1
+
+
+def _is_in(place: Array, tree: BVHTree) -> bool:
+    """Whether a place (3,) is within a closed surface: a ray leaves it an odd number of times."""
+    crossed, here = 0, Vector(place)
+    while crossed < MOST_CROSSED:
+        hit, _, _, away = tree.ray_cast(here, RAY)
+        if hit is None:
+            break
+        crossed, here = crossed + 1, hit + RAY * max(1e-6 * away, 1e-9)
+    return crossed % 2 == 1
 
 
 def _linked(pairs: NDArray[np.int64], count: int) -> coo_array:

@@ -175,8 +175,8 @@ def _reach(surface: Array) -> float:
 
 
 def trial(seed: int, *, steady: bool = False) -> Outcome:
-    """The outcome of the trial with this seed, of the kind ``KINDS[seed % 4]``; ``steady`` where one
-    more hand keeps the body from sliding and turning, which takes no work.
+    """The outcome of the trial with this seed, of the kind ``KINDS[seed % 4]``; ``steady`` where
+    one more hand keeps the body from sliding and turning, which takes no work.
     """
     random = np.random.default_rng(seed)
     body = shapes()[int(random.integers(len(shapes())))]

@@ -92,12 +92,23 @@ def is_apart(thing):
         bpy.ops.object.join()
 
 
+def is_in_a_bowl(thing):
+    """Within the box around the other part, and not in it: a frame of four bars around it."""
+    thing.data.transform(Matrix.Scale(0.2, 4))
+    with bpy.context.temp_override(active_object=thing):
+        bpy.ops.mesh.primitive_torus_add(major_radius=0.05, minor_radius=0.01)
+    ring = bpy.context.object
+    with bpy.context.temp_override(selected_editable_objects=[thing, ring], active_object=thing):
+        bpy.ops.object.join()
+
+
 def lies_on_nothing(thing):
     thing.palpate.floor = "NONE"
 
 
 @pytest.mark.parametrize(
-    "change", [hovers, is_too_soft, has_a_parent, is_keyed, is_apart, lies_on_nothing]
+    "change",
+    [hovers, is_too_soft, has_a_parent, is_keyed, is_apart, is_in_a_bowl, lies_on_nothing],
 )
 def test_what_cannot_rest_where_it_is_is_pinned(change):
     thing = cube()
@@ -108,10 +119,11 @@ def test_what_cannot_rest_where_it_is_is_pinned(change):
     assert not thing.palpate.steady
 
 
-def test_parts_that_are_in_each_other_rest_as_one():
+@pytest.mark.parametrize(("scale", "away"), [(1.0, 0.03), (0.3, 0.0)])
+def test_parts_that_are_in_each_other_rest_as_one(scale, away):
     thing = cube()
     mesh = thing.data.copy()
-    mesh.transform(Matrix.Translation((0.03, 0.0, 0.0)))
+    mesh.transform(Matrix.Translation((away, 0.0, 0.0)) @ Matrix.Scale(scale, 4))
     other = bpy.data.objects.new("Other", mesh)
     bpy.context.collection.objects.link(other)
     with bpy.context.temp_override(selected_editable_objects=[thing, other], active_object=thing):
