@@ -36,7 +36,7 @@ from palpate.tests.bodies.soft_block import block_mesh
 
 Array = NDArray[np.float64]
 
-AIR = 1e-5
+AIR = 1e-3
 # Without gravity bodies weigh nothing, whatever their density; that tells how drag is spread.
 SMOOTH = RestSettings(friction=0.0, gravity=(0.0, 0.0, 0.0))
 BALL_RADIUS = 0.03
