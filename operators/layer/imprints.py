@@ -19,7 +19,7 @@ FELT = 2
 
 def imprint_of(thing: bpy.types.Object) -> NDArray[np.float32]:
     """Displacements (p, 3) of the drawn vertices by the imprints that are shown, local units; none
-    where the object springs back, or nothing pins it.
+    where the object springs back, or nothing holds it.
     """
     moved = np.zeros((len(layers.drawn_mesh(thing).vertices), 3), dtype=np.float32)
     for layer in _imprints(thing):
@@ -45,7 +45,8 @@ def imprinted_rest(thing: bpy.types.Object) -> NDArray[np.float32]:
 
 def _imprints(thing: bpy.types.Object) -> list[bpy.types.NodesModifier]:
     chosen, mesh = thing.palpate, layers.drawn_mesh(thing)
-    if chosen.yield_depth == 0.0 or chosen.pin_mode == "NONE":
+    is_loose = chosen.pin_mode == "NONE" and not chosen.steady
+    if chosen.yield_depth == 0.0 or is_loose:
         return []
     return [
         one
