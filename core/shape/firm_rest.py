@@ -90,7 +90,9 @@ class FirmRest(Generic[Lying]):
     _looks: int = field(default=MOST_LOOKS, init=False)
     _changes: tuple[float, ...] = field(default=(), init=False)
     _known: tuple[Rest, ...] | None = field(default=None, init=False)
+    # Of bodies in hand: what looks for them in the background, and how firm it found them last.
     _behind: dict[int, FoundBehind] = field(default_factory=dict, init=False)
+    _heard: dict[int, float] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         """As firm as each was when it was looked at last."""
@@ -182,6 +184,9 @@ class FirmRest(Generic[Lying]):
             A force is no number.
         """
         self.forget()
+        if self._heard:
+            now = enumerate(self.lying.firmness)
+            self.lying.firm([self._heard.get(number, times) for number, times in now])
         self.lying.hurry(seconds)
 
     @property
@@ -203,7 +208,10 @@ class FirmRest(Generic[Lying]):
             return rest
         if number not in self._behind:
             self._behind[number] = FoundBehind(rest.body, shape, rest.young_modulus / times)
-        return replace(rest, deformed=self._behind[number].now(loads).displacements)
+        found = self._behind[number].now(loads)
+        if found.share != 1.0:
+            self._heard[number] = found.share
+        return replace(rest, deformed=found.displacements)
 
     def close(self) -> None:
         """End what goes on in the background; does not wait."""
