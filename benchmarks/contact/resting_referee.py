@@ -17,14 +17,16 @@ from __future__ import annotations
 
 import argparse
 import sys
+import tempfile
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from palpate.benchmarks.measuring.contact.contact_reference import reference_forces
 from palpate.benchmarks.measuring.contact.resting_ball import RestingBall
+from palpate.core.bake.job import run_bake
 from palpate.core.bake.settings import BakeSettings
-from palpate.core.bake.steps import bake
 from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import plate, sphere
@@ -100,7 +102,10 @@ def main() -> int:
         edge_length=parser.parse_args().edge_length,
         epsilon=1e-3,
     )
-    body, _ = bake(Surface(*golden_sphere(SURFACE_NODES, RADIUS)), settings)
+    ball = Surface(*golden_sphere(SURFACE_NODES, RADIUS))
+    # fTetWild leaves files where it runs.
+    with tempfile.TemporaryDirectory() as folder:
+        body, _ = run_bake(ball, settings, Path(folder) / "body.npz")
     points, _ = bearing_points(body)
     radius = float(np.linalg.norm(points.positions, axis=1).mean())
     table = RestingBall(POISSON_RATIO)

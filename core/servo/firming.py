@@ -172,8 +172,7 @@ class Firming:
             FingerLoad(
                 nodes[own],
                 forces[own],
-                # What a hand keeps from sliding no foot needs to hold.
-                by=Setting(*one, self.body, support.friction if let_go is None else 0.0),
+                by=Setting(*one, self.body, support.friction),
                 firmness=snapshot.firmness,
                 let_go=let_go,
             )

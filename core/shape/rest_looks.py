@@ -113,6 +113,4 @@ def _setting(rest: Rest, touch: BodyTouch) -> Setting | None:
         return None
     moved = rest.placement.to_tool(touch.places) - touch.at_rest
     footing = Footing(touch.at_rest, moved, touch.pushes)
-    # What a hand keeps from sliding no foot needs to hold.
-    friction = touch.friction if rest.let_go is None else 0.0
-    return Setting(*touch.by, rest.body, friction, footing)
+    return Setting(*touch.by, rest.body, touch.friction, footing)

@@ -7,10 +7,9 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...core.errors import PalpateError
+from ...core.mesh.tet_mesh import pieces
 from ...core.shape.shapes import shape_name
 from ..layer import layers, stack
 from ..played import mesh_cache
@@ -76,9 +75,7 @@ def _is_one(surface: DrawnSurface, size: float) -> bool:
     cells = np.round(surface.body / (SAME * size)).astype(np.int64)
     _, number = np.unique(cells, axis=0, return_inverse=True)
     corners = number.reshape(-1)[surface.triangles]
-    ends = corners[:, [0, 1]].T, corners[:, [1, 2]].T
-    links = _linked(np.concatenate(ends, axis=1).T, int(number.max()) + 1)
-    part = connected_components(links, directed=False)[1][corners[:, 0]]
+    part = pieces(corners, int(number.max()) + 1)[corners[:, 0]]
     parts = [surface.triangles[part == one] for one in np.unique(part)]
     if not 1 < len(parts) <= MOST_PARTS:
         return len(parts) == 1
@@ -86,7 +83,10 @@ def _is_one(surface: DrawnSurface, size: float) -> bool:
     low = np.array([box.min(axis=0) for box in boxes]) - SAME * size
     high = np.array([box.max(axis=0) for box in boxes]) + SAME * size
     near = np.argwhere(((low[:, None] <= high) & (low <= high[:, None])).all(axis=2))
-    trees = [BVHTree.FromPolygons(surface.body.tolist(), one.tolist()) for one in parts]
+    trees = [
+        BVHTree.FromPolygons(box.tolist(), np.arange(len(box)).reshape(-1, 3).tolist())
+        for box in boxes
+    ]
     meet = [
         (one, other)
         for one, other in near.tolist()
@@ -98,7 +98,7 @@ def _is_one(surface: DrawnSurface, size: float) -> bool:
         )
     ]
     pairs = np.array(meet, dtype=np.int64).reshape(-1, 2)
-    return connected_components(_linked(pairs, len(parts)), directed=False)[0] == 1
+    return not pieces(pairs, len(parts)).any()
 
 
 def _is_in(place: Array, tree: BVHTree) -> bool:
@@ -110,12 +110,6 @@ def _is_in(place: Array, tree: BVHTree) -> bool:
             break
         crossed, here = crossed + 1, hit + RAY * max(1e-6 * away, 1e-9)
     return crossed % 2 == 1
-
-
-def _linked(pairs: NDArray[np.int64], count: int) -> coo_array:
-    """Links between pairs (k, 2) of so many."""
-    ones = np.ones(len(pairs), dtype=np.int8)
-    return coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(count, count))
 
 
 def refusal(thing: bpy.types.Object) -> PalpateError | None:

@@ -60,6 +60,11 @@ class FingerLoad:
     firmness: float = 1.0
     let_go: Array | None = None
 
+    @property
+    def friction(self) -> float:
+        """Of its tool; none where a hand keeps the body from sliding: no foot needs to hold it."""
+        return 0.0 if self.by is None or self.let_go is not None else self.by.friction
+
     def times(self, share: float) -> FingerLoad:
         """With so much of its forces."""
         return replace(self, forces=share * self.forces)

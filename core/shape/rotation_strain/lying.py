@@ -89,7 +89,7 @@ class Loose:
                 own[pressed],
                 normals @ load.by.pose.rotation.T,
                 motions.of_nodes[pressed],
-                load.by.friction,
+                load.friction,
             )
         only = let_go(loads)
         if only is not None:

@@ -58,7 +58,6 @@ class FreeStroke:
     _others: tuple[Lying, ...]
     _coming: Alone | FreePile
     _drawn: DrawnBody
-    _is_steady: bool
     pace, moves = PACE, True
 
     @classmethod
@@ -85,7 +84,6 @@ class FreeStroke:
             tuple(others),
             coming,
             drawn,
-            thing.palpate.steady,
         )
 
     def make_ready(self, thing: bpy.types.Object) -> None:
@@ -185,6 +183,11 @@ class FreeStroke:
             return self.stroked(asked)
         except PalpateError:
             return asked, stroked
+
+    @property
+    def _is_steady(self) -> bool:
+        """Whether a hand steadies it."""
+        return self.rested.rest.let_go is not None
 
     def _in_place(self, stroked: Stroked) -> Stroked:
         """The same of an object that lies where it rested, as one that a hand steadies does again

@@ -76,7 +76,7 @@ def held_aside(
     edge : of a usual triangle, metres.
     """
     goals = np.einsum("pa,pai->pi", alphas, moved[corners])
-    if by.friction == 0.0:
+    if load.friction == 0.0:
         none = np.zeros(len(goals))
         return HeldAside(goals, np.zeros_like(goals), none, none, np.zeros_like(goals))
     if by.footing is not None and by.footing.pushes.any():
@@ -86,10 +86,10 @@ def held_aside(
     forces = load.firmness * _spread(load, by.body, places, edge)
     pushes, pulls = pushed_and_pulled(forces, normals)
     sizes = np.maximum(np.linalg.norm(pulls, axis=1), np.finfo(float).tiny)
-    came = CAME * edge * sliding(forces, normals, by.friction)
+    came = CAME * edge * sliding(forces, normals, load.friction)
     back = (came / sizes)[:, None] * pulls
     goals = _as_a_whole(goals + back, places.positions, normals, pushes)
-    return HeldAside(goals, normals, np.full(len(goals), by.friction), pushes, pulls)
+    return HeldAside(goals, normals, np.full(len(goals), load.friction), pushes, pulls)
 
 
 def _as_a_whole(goals: Array, at: Array, normals: Array, pushes: Array) -> Array:

@@ -207,8 +207,8 @@ widely! {
 
 widely! {
     /// Has the first slots be shifted by that much more along these ways under forces on the one whose
-    /// blocks these are, and turned as these turn their body now, no more as they did; by where slots were and are from its
-    /// centre.
+    /// blocks these are, and turned as these turn their body now, no more as they did; by where slots
+    /// were and are from its centre.
     pub(super) fn carry_otherwise(
         blocks: &mut [f64],
         shifts: &[f64],
