@@ -1,8 +1,8 @@
 """Presses by tools that slide: what is drawn and what is felt come from one contact.
 
 The firmness is its force over that of the linear contact. Where a touch is hardly wider than a
-triangle, its places lack what the near field knows, and between them the dent is deeper than the
-tool: it is trusted as far as many of them press.
+triangle, its places lack what the near field knows: there they are let in as far as it dents the
+surface between the nodes. A touch that is still finer they would miss.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from ...solid.free_solid import FreeSolid
 from ..finger_load import FingerLoad, Setting, on_free_nodes, totals
 from ..lying import Loose
 from ..relaxation import Relaxation
-from .kept_out import Kept, carrying, kept_out, places_of
+from .kept_out import Kept, carrying, kept_out
+from .reached import Reached, places_of
 
 Array = NDArray[np.float64]
 
@@ -32,8 +33,11 @@ ENOUGH = 0.015
 # Times that one which nothing holds, and which lies on all of its foot, goes on to there; and what
 # is left of one that goes astray.
 ROUNDS, ASTRAY = 2, 1.0
-# With so few places that press it is not trusted, with so many it is.
-FEW_PLACES, MANY_PLACES = 8.0, 16.0
+# With so few places that press a touch is hardly wider than triangles, with so many it is.
+WIDE = (8.0, 16.0)
+# So much of the linear contact's force comes back from places that miss a touch, from others so
+# much.
+MISSED, RESOLVED = 0.6, 0.8
 # Places at most that press for each node that the linear contact presses.
 PLACES_PER_NODE = 4.0
 
@@ -45,7 +49,7 @@ class Beside:
     Attributes
     ----------
     share : of the linear force, by which it presses back.
-    trust : 0 to 1, how far its touch is wider than the triangles; 0 where it is not at rest, too.
+    trust : 0 to 1, how far its places tell of the touch; 0 where it is not at rest, too.
     energy : elastic, of the linear press, J/Pa.
     kept : it.
     """
@@ -73,15 +77,32 @@ def beside_tools(
     if there is None:
         return None
     linear = loads if depth == 1.0 else _pressed(there)
-    if linear is None or _is_fine(linear):
+    if linear is None:
         return None
     forces = on_free_nodes(solid, linear)
     moved = solid.linear(forces)
-    kept = kept_out(body, solid, relaxation, linear, moved if start is None else start)
-    if kept is None:
+    reached = Reached.of(body, solid, linear)
+    if reached is None:
         return None
-    found = _beside(linear, kept, 0.5 * float((forces * moved).sum()))
-    return found if found.trust > 0.0 else None
+    begin = moved if start is None else start
+    kept, resolved = kept_out(solid, relaxation, reached, linear, begin), 1.0
+    narrow = 1.0 - _on_way(kept.pressing, *WIDE)
+    if narrow:
+        begin = kept.linear if kept.left <= ENOUGH else begin
+        reached = reached.dented(moved, narrow)
+        resolved = _on_way(_comes_back(reached, linear, moved), MISSED, RESOLVED)
+        if not resolved:
+            return None
+        kept = kept_out(solid, relaxation, reached, linear, begin)
+    found = _beside(linear, kept, 0.5 * float((forces * moved).sum()), resolved)
+    return found if found.trust else None
+
+
+def _comes_back(reached: Reached, loads: Sequence[FingerLoad], moved: Array) -> float:
+    """The share of the linear contact's forces that places tell of a linear body, the least."""
+    along = totals(loads)
+    told = (reached.of_tools(reached.pushes(moved)) * along).sum(axis=1)
+    return float((told / (along * along).sum(axis=1)).min())
 
 
 def between_tools(
@@ -99,33 +120,40 @@ def between_tools(
     """
     if solid.motions is None or any(load.by is None for load in loads):
         return None
-    if _is_fine(loads) or (before and before.pressing * _grown(before, loads) < FEW_PLACES):
+    if _is_fine(loads) or (before and before.pressing * _grown(before, loads) < WIDE[0]):
         return None
     forces = on_free_nodes(solid, loads)
     moved = solid.linear(forces)
     loose, firmness = Loose.of(solid, solid.motions, loads), loads[0].firmness
-    at = partial(kept_out, body, solid, relaxation, loads, moved, loose, firmness)
+    reached = Reached.of(body, solid, loads, loose)
+    if reached is None:
+        return None
+    at = partial(kept_out, solid, relaxation, reached, loads, moved, loose, firmness)
     kept = at(before)
     for _ in range(ROUNDS):
-        if kept is None or kept.left <= ENOUGH or kept.pressing <= FEW_PLACES:
+        if kept.left <= ENOUGH or kept.pressing <= WIDE[0]:
             break
         # What began too far off does not come back from where it went.
         kept = at(kept if kept.left < ASTRAY else None)
-    return None if kept is None else _beside(loads, kept, 0.5 * float((forces * moved).sum()))
+    wide = _on_way(kept.pressing, *WIDE)
+    return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
 
 
-def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float) -> Beside:
-    wide = (kept.pressing - FEW_PLACES) / (MANY_PLACES - FEW_PLACES)
-    trust = 0.0 if kept.left > ENOUGH else min(max(wide, 0.0), 1.0)
+def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float) -> Beside:
     along = totals(loads)
     share = float((kept.forces * along).sum()) / float((along * along).sum())
-    return Beside(share, trust, energy, kept)
+    return Beside(share, trust if kept.left <= ENOUGH else 0.0, energy, kept)
+
+
+def _on_way(value: float, first: float, last: float) -> float:
+    """How far it is from the first to the last."""
+    return min(max((value - first) / (last - first), 0.0), 1.0)
 
 
 def _is_fine(loads: Sequence[FingerLoad]) -> bool:
     """Whether the touch of a tool is so fine that its places would not be trusted."""
     nodes = min(carrying(load.forces) for load in loads)
-    return PLACES_PER_NODE * nodes < FEW_PLACES
+    return PLACES_PER_NODE * nodes < WIDE[0]
 
 
 def _grown(before: Kept, loads: Sequence[FingerLoad]) -> float:

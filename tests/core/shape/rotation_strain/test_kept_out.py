@@ -11,7 +11,8 @@ from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.felt import loads_of
 from palpate.core.shape.rotation_strain.beside.beside_tools import beside_tools
-from palpate.core.shape.rotation_strain.beside.kept_out import PLACES, kept_out
+from palpate.core.shape.rotation_strain.beside.kept_out import kept_out
+from palpate.core.shape.rotation_strain.beside.reached import PLACES, Reached
 from palpate.core.shape.rotation_strain.finger_load import on_free_nodes
 from palpate.core.shape.rotation_strain.firmness import FirmBody
 from palpate.core.shape.rotation_strain.relaxation import relaxation
@@ -68,20 +69,24 @@ def test_what_is_drawn_is_beside_the_tool_and_at_rest(firm, name):
 
 def test_only_tools_that_slide_keep_a_body_out(firm):
     point = touch_nearest(firm.body, (0.025, 0.025, 0.05), (0.0, 0.0, -0.002))
-    none = np.zeros((firm.solid.node_count, 3))
     loads = loads_of([point])
     assert loads[0].by is None
-    assert kept_out(firm.body, firm.solid, firm.relaxation, loads, none) is None
-    assert kept_out(firm.body, firm.solid, firm.relaxation, [], none) is None
+    assert Reached.of(firm.body, firm.solid, loads) is None
+    assert Reached.of(firm.body, firm.solid, []) is None
+
+
+def kept(firm, touches):
+    loads = loads_of(touches)
+    start = firm.solid.linear(on_free_nodes(firm.solid, loads))
+    reached = Reached.of(firm.body, firm.solid, loads)
+    return kept_out(firm.solid, firm.relaxation, reached, loads, start)
 
 
 def test_two_tools_keep_it_out_together(firm):
     tool = sphere(0.008)
     starts = [Pose.at([x, 0.025, 0.0585]) for x in (0.01, 0.04)]
     touches = press_tools(firm.body, tool, starts, [-0.005 * UP] * 2)
-    start = firm.solid.linear(on_free_nodes(firm.solid, loads_of(touches)))
-    kept = kept_out(firm.body, firm.solid, firm.relaxation, loads_of(touches), start)
-    moved = kept.displacements
+    moved = kept(firm, touches).displacements
     places = drawn_places(firm.body, firm.solid, moved)
     for touch in touches:
         assert depth_within(tool, touch.pose, places) < 5e-5
@@ -107,10 +112,9 @@ def test_the_work_of_the_tool_is_what_the_body_holds(firm):
     forces, moved = [0.0], None
     for depth in depths[1:]:
         touch = press_tool(firm.body, sphere(0.012), Pose.at([0.025, 0.025, 0.062 - depth]))
-        start = firm.solid.linear(firm.solid.on_free_nodes(touch.nodes, touch.nodal_forces))
-        kept = kept_out(firm.body, firm.solid, firm.relaxation, loads_of([touch]), start)
-        forces.append(-kept.forces[0, 2])
-        moved = kept.displacements
+        found = kept(firm, [touch])
+        forces.append(-found.forces[0, 2])
+        moved = found.displacements
     assert np.trapezoid(forces, depths) == pytest.approx(firm.solid.energy(moved), rel=0.02)
 
 
@@ -174,18 +178,3 @@ def test_among_coarse_triangles_a_dent_is_deepest_where_it_is_pressed():
         moved = coarse.pressed(loads).displacements
         deepest = solid.positions[np.argmin(moved[:, 2])]
         assert np.linalg.norm(deepest - place) < 0.75 * 0.05 / 3
-
-
-def test_what_is_drawn_and_felt_goes_over_from_the_one_to_the_other(firm):
-    """From forces that lead it to the contact, as a ball goes in, without a jump."""
-    depths = np.linspace(0.003, DEPTH, 21)
-    shares, trusts = [], []
-    for depth in depths:
-        loads = loads_of(
-            [press_tool(firm.body, sphere(0.012), Pose.at([0.025, 0.025, 0.062 - depth]))]
-        )
-        found = beside_tools(firm.body, firm.solid, firm.relaxation, loads, 1.0)
-        trusts.append(0.0 if found is None else found.trust)
-        shares.append(firm.under(loads).deepest)
-    assert trusts[0] < 0.5 < trusts[-1]
-    assert np.abs(np.diff(shares)).max() < 0.04
