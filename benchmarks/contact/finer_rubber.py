@@ -15,7 +15,7 @@ beside the same body with every tetrahedron cut in eight; there the largest erro
 well, over the largest displacement.
 
 Claimed: *Real*'s force is within 10 % of the fine mesh's; its surface no farther off than the
-coarse mesh's own equilibrium (by 2 %), of another body than *Linear*'s, and within 15 %. The exit
+coarse mesh's own equilibrium (by 5 %), of another body than *Linear*'s, and within 15 %. The exit
 status tells whether that holds. Takes two minutes, more on a busy machine, and of another body some
 ten.
 """
@@ -63,7 +63,7 @@ OUTWARD = np.array([0.0, 0.0, 1.0])
 # 1.4 and 1.9 usual edges of the coarse mesh.
 RADII, DEPTHS = (0.012, 0.016), (0.25, 0.5, 0.75)
 # The force; the drawn surface over that of the coarse mesh's own; that of other bodies.
-CLAIMED, CLAIMED_OVER_OWN, CLAIMED_OF_OTHERS = 0.10, 1.02, 0.15
+CLAIMED, CLAIMED_OVER_OWN, CLAIMED_OF_OTHERS = 0.10, 1.05, 0.15
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """Presses by tools that slide: what is drawn and what is felt come from one contact.
 
 The firmness is its force over that of the linear contact. Where a touch is hardly wider than a
-triangle, its places lack what the near field knows: there they are let in as far as it dents the
-surface between the nodes. A touch that is still finer they would miss.
+triangle, its places lack what the near field knows: there they lie on it as on a bed of springs. A
+touch that is still finer they would miss.
 """
 
 from __future__ import annotations
@@ -38,6 +38,8 @@ WIDE = (8.0, 16.0)
 # So much of the linear contact's force comes back from places that miss a touch, from others so
 # much.
 MISSED, RESOLVED = 0.6, 0.8
+# How firm what is beneath places is taken to be at least, over a linear body.
+SOFTEST = 0.1
 # Places at most that press for each node that the linear contact presses.
 PLACES_PER_NODE = 4.0
 
@@ -88,12 +90,16 @@ def beside_tools(
     kept, resolved = kept_out(solid, relaxation, reached, linear, begin), 1.0
     narrow = 1.0 - _on_way(kept.pressing, *WIDE)
     if narrow:
-        begin = kept.linear if kept.left <= ENOUGH else begin
-        reached = reached.dented(moved, narrow)
-        resolved = _on_way(_comes_back(reached, linear, moved), MISSED, RESOLVED)
-        if not resolved:
+        as_linear = max(_comes_back(reached, linear, moved), SOFTEST)
+        firm = max(_share(linear, kept) / as_linear, SOFTEST)
+        bed = reached.on_bed(moved, firm * totals(linear), narrow)
+        resolved = (
+            0.0 if bed is None else _on_way(_comes_back(bed, linear, moved), MISSED, RESOLVED)
+        )
+        if bed is None or not resolved:
             return None
-        kept = kept_out(solid, relaxation, reached, linear, begin)
+        begin = kept.linear if kept.left <= ENOUGH else begin
+        kept = kept_out(solid, relaxation, bed, linear, begin)
     found = _beside(linear, kept, 0.5 * float((forces * moved).sum()), resolved)
     return found if found.trust else None
 
@@ -140,9 +146,14 @@ def between_tools(
 
 
 def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float) -> Beside:
-    along = totals(loads)
-    share = float((kept.forces * along).sum()) / float((along * along).sum())
+    share = _share(loads, kept)
     return Beside(share, trust if kept.left <= ENOUGH else 0.0, energy, kept)
+
+
+def _share(loads: Sequence[FingerLoad], kept: Kept) -> float:
+    """The force of its tools over that of the linear contact."""
+    along = totals(loads)
+    return float((kept.forces * along).sum()) / float((along * along).sum())
 
 
 def _on_way(value: float, first: float, last: float) -> float:

@@ -87,6 +87,7 @@ def kept_out(
         None if loose is None else firmness * loose.dead,
         None if loose is None else (*fields_of(loose.motions), loose.gives.tolist()),
         None if loose is None else _held_by(loads, reached, start, before),
+        on_bed=reached.is_on_bed,
     )
     forces = reached.of_tools(pushes)
     pressing = min(carrying(pushes[reached.which == one]) for one in range(len(forces)))

@@ -49,6 +49,7 @@ class Reached:
     firmness : (p,), force over depth, N/m at 1 Pa.
     known : (p, 3), the same nodes among those of the compliance.
     compliance : (k, k, 3, 3) between these, m/N at 1 Pa.
+    is_on_bed : whether that is what they give, and not what holds them off until they do.
     """
 
     tools: Sequence[Setting]
@@ -61,6 +62,7 @@ class Reached:
     firmness: Array
     known: NDArray[np.int64]
     compliance: Array
+    is_on_bed: bool = False
 
     @classmethod
     def of(
@@ -111,15 +113,23 @@ class Reached:
         there: Array = self.rests + ways
         return there
 
-    def dented(self, linear: Array, share: float) -> Reached:
-        """As far out as the near field dents them between the nodes, or so much of that.
+    def on_bed(self, linear: Array, forces: Array, share: float) -> Reached | None:
+        """With the near field beneath them, or so much of its give; None where it gives nothing.
 
-        The linear contact has its surface beside the tools, and nodes, at displacements ``linear``
-        (f, 3), between which triangles lie within these.
+        In the linear contact nodes are at displacements ``linear`` (f, 3), and triangles within the
+        tools by what the near field dents the surface between nodes: as much as springs give, of
+        one pressure for a depth, that carry the ``forces`` (k, 3) of the tools.
         """
-        distance, out = self.distances(self.moved(linear))
-        dents = share * np.maximum(-distance, 0.0)[:, None] * out
-        return replace(self, rests=self.rests + dents)
+        distance, _ = self.distances(self.moved(linear))
+        within = np.maximum(-distance, 0.0)
+        firmer = np.zeros(len(within))
+        for one, force in enumerate(np.linalg.norm(forces, axis=1)):
+            own = self.which == one
+            carried = float(self.firmness[own] @ within[own])
+            if not carried > 0.0:
+                return None
+            firmer[own] = force / carried
+        return replace(self, firmness=self.firmness * firmer / share, is_on_bed=True)
 
     def distances(self, there: Array) -> tuple[Array, Array]:
         """Distances (p,) of places (p, 3) from their tools, negative within, and normals (p, 3)."""

@@ -34,6 +34,8 @@ pub struct Against {
     /// What is counted in of pushes, and of pulls aside, N.
     counted: Vec<f64>,
     pulls: Vec<DVec3>,
+    /// Whether places stay on springs, as on a bed: nothing is counted in.
+    pub on_bed: bool,
     /// What the places did when the body was last looked at, and how it yields under that.
     doing: Vec<Doing>,
     yielding: Yielding,
@@ -68,6 +70,7 @@ impl Against {
             tools,
             compliance,
             known,
+            on_bed: false,
             doing: Vec::new(),
             yielding: Yielding::default(),
         })
@@ -82,6 +85,9 @@ impl Against {
 
     /// The work that is missing where places are still within, or not held as they are to be, J.
     pub fn missed(&self, warped: &Nodal) -> f64 {
+        if self.on_bed {
+            return 0.0;
+        }
         (0..self.places.len())
             .map(|one| {
                 let (push, _, depth) = self.push(one, warped);

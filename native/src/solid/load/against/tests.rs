@@ -129,3 +129,13 @@ fn a_place_is_held_by_no_more_than_its_friction_and_where_it_sticks_gets_to_its_
         assert!(aside.x > 0.0 && aside.y < 0.0);
     }
 }
+
+#[test]
+fn on_a_bed_nothing_is_missed_however_deep_it_gives() {
+    let mut against = pressed(None);
+    let still = vec![[0.0; 3]; 3];
+    assert!(against.missed(&still) > 0.0);
+    against.on_bed = true;
+    assert!(against.missed(&still) == 0.0);
+    assert!(against.pushes(&still).iter().all(|push| push.z < 0.0));
+}
