@@ -33,8 +33,9 @@ ENOUGH = 0.015
 # Times that one which nothing holds, and which lies on all of its foot, goes on to there; and what
 # is left of one that goes astray.
 ROUNDS, ASTRAY = 2, 1.0
-# With so few places that press a touch is hardly wider than triangles, with so many it is.
-WIDE = (8.0, 16.0)
+# With so few places that would press a linear body a touch is hardly wider than triangles, with so
+# many it is; of one that nothing holds, as many press it.
+WIDE, WIDE_LYING = (12.0, 22.0), (8.0, 16.0)
 # So much of the linear contact's force comes back from places that miss a touch, from others so
 # much.
 MISSED, RESOLVED = 0.6, 0.8
@@ -86,22 +87,33 @@ def beside_tools(
     reached = Reached.of(body, solid, linear)
     if reached is None:
         return None
-    begin = moved if start is None else start
-    kept, resolved = kept_out(solid, relaxation, reached, linear, begin), 1.0
-    narrow = 1.0 - _on_way(kept.pressing, *WIDE)
-    if narrow:
-        as_linear = max(_comes_back(reached, linear, moved), SOFTEST)
-        firm = max(_share(linear, kept) / as_linear, SOFTEST)
-        bed = reached.on_bed(moved, firm * totals(linear), narrow)
-        resolved = (
-            0.0 if bed is None else _on_way(_comes_back(bed, linear, moved), MISSED, RESOLVED)
-        )
-        if bed is None or not resolved:
-            return None
-        begin = kept.linear if kept.left <= ENOUGH else begin
-        kept = kept_out(solid, relaxation, bed, linear, begin)
-    found = _beside(linear, kept, 0.5 * float((forces * moved).sum()), resolved)
-    return found if found.trust else None
+    begin, energy = moved if start is None else start, 0.5 * float((forces * moved).sum())
+
+    def at(where: Reached, begin: Array, trust: float) -> Beside:
+        return _beside(linear, kept_out(solid, relaxation, where, linear, begin), energy, trust)
+
+    narrow = 1.0 - _on_way(_pressing(reached, moved), *WIDE)
+    if not narrow:
+        return _trusted(at(reached, begin, 1.0))
+    bed = reached.on_bed(moved, totals(linear), narrow)
+    resolved = 0.0 if bed is None else _on_way(_comes_back(bed, linear, moved), MISSED, RESOLVED)
+    if bed is None or not resolved:
+        return None
+    found = _trusted(at(bed, begin, resolved))
+    if found is None:
+        return None
+    # What is beneath is of the same law: as firm as the body was found to be.
+    return _trusted(at(bed.as_firm(max(found.share, SOFTEST)), found.kept.linear, resolved))
+
+
+def _trusted(found: Beside) -> Beside | None:
+    return found if found.trust > 0.0 else None
+
+
+def _pressing(reached: Reached, moved: Array) -> float:
+    """On how many places the least of tools would press a linear body."""
+    pushes = reached.pushes(moved)
+    return min(carrying(pushes[reached.which == one]) for one in range(len(reached.tools)))
 
 
 def _comes_back(reached: Reached, loads: Sequence[FingerLoad], moved: Array) -> float:
@@ -126,7 +138,7 @@ def between_tools(
     """
     if solid.motions is None or any(load.by is None for load in loads):
         return None
-    if _is_fine(loads) or (before and before.pressing * _grown(before, loads) < WIDE[0]):
+    if _is_fine(loads) or (before and before.pressing * _grown(before, loads) < WIDE_LYING[0]):
         return None
     forces = on_free_nodes(solid, loads)
     moved = solid.linear(forces)
@@ -137,23 +149,18 @@ def between_tools(
     at = partial(kept_out, solid, relaxation, reached, loads, moved, loose, firmness)
     kept = at(before)
     for _ in range(ROUNDS):
-        if kept.left <= ENOUGH or kept.pressing <= WIDE[0]:
+        if kept.left <= ENOUGH or kept.pressing <= WIDE_LYING[0]:
             break
         # What began too far off does not come back from where it went.
         kept = at(kept if kept.left < ASTRAY else None)
-    wide = _on_way(kept.pressing, *WIDE)
+    wide = _on_way(kept.pressing, *WIDE_LYING)
     return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
 
 
 def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float) -> Beside:
-    share = _share(loads, kept)
-    return Beside(share, trust if kept.left <= ENOUGH else 0.0, energy, kept)
-
-
-def _share(loads: Sequence[FingerLoad], kept: Kept) -> float:
-    """The force of its tools over that of the linear contact."""
     along = totals(loads)
-    return float((kept.forces * along).sum()) / float((along * along).sum())
+    share = float((kept.forces * along).sum()) / float((along * along).sum())
+    return Beside(share, trust if kept.left <= ENOUGH else 0.0, energy, kept)
 
 
 def _on_way(value: float, first: float, last: float) -> float:
@@ -164,7 +171,7 @@ def _on_way(value: float, first: float, last: float) -> float:
 def _is_fine(loads: Sequence[FingerLoad]) -> bool:
     """Whether the touch of a tool is so fine that its places would not be trusted."""
     nodes = min(carrying(load.forces) for load in loads)
-    return PLACES_PER_NODE * nodes < WIDE[0]
+    return PLACES_PER_NODE * nodes < WIDE_LYING[0]
 
 
 def _grown(before: Kept, loads: Sequence[FingerLoad]) -> float:

@@ -131,6 +131,10 @@ class Reached:
             firmer[own] = force / carried
         return replace(self, firmness=self.firmness * firmer / share, is_on_bed=True)
 
+    def as_firm(self, times: float) -> Reached:
+        """Where places are so many times as firm."""
+        return replace(self, firmness=times * self.firmness)
+
     def distances(self, there: Array) -> tuple[Array, Array]:
         """Distances (p,) of places (p, 3) from their tools, negative within, and normals (p, 3)."""
         distance, out = np.zeros(len(there)), np.zeros_like(there)

@@ -20,6 +20,7 @@ from palpate.core.shape.solid.free_solid import FreeSolid
 
 UP = np.array([0.0, 0.0, 1.0])
 DEPTH = 0.008
+CELLS = 8
 TURN = facing(UP, np.eye(3)[0])
 TOOLS = {
     "ball": (sphere(0.012), [0.025, 0.025, 0.062 - DEPTH]),
@@ -30,7 +31,7 @@ TOOLS = {
 
 @pytest.fixture(scope="module")
 def firm():
-    mesh, fixed = paper_cube(cells=6)
+    mesh, fixed = paper_cube(cells=CELLS)
     body = baked_body(mesh, fixed, 0.45, 1.0, "smoothed")
     solid = FreeSolid.of(body)
     return FirmBody(body, solid, relaxation(solid))
@@ -132,7 +133,7 @@ def test_the_surface_lies_against_the_tool_everywhere(firm, name):
     distance, _ = tool.distance(pose.to_tool(places))
     # A flat triangle between places on what is round goes through it by its edge's square over 8
     # radii.
-    edge = 0.05 / 6
+    edge = 0.05 / CELLS
     sag = edge**2 / (8.0 * tool.radius) if name != "wall" else 0.0
     assert -distance.min() < 0.02 * DEPTH + sag
     touches = distance < 0.02 * DEPTH + sag

@@ -34,6 +34,11 @@ def coarse():
     return firm_cube(6)
 
 
+@pytest.fixture(scope="module")
+def fine():
+    return firm_cube(12)
+
+
 def pressed(firm, depth, tool=BALL, place=PLACE):
     pose = Pose.at(place + (tool.radius - depth) * UP)
     return loads_of([press_tool(firm.body, tool, pose)])
@@ -86,15 +91,15 @@ def test_its_pushes_are_those_of_a_contact(coarse):
     assert np.abs(gaps[sizes > 0.0]).max() < 1e-4 * depth
 
 
-@pytest.mark.parametrize("depth", [0.003, 0.006])
-def test_a_coarse_mesh_presses_back_as_one_twice_as_fine(coarse, depth):
-    """Where rubber on the coarse one, without the near field, is 5 to 9 % firmer."""
+@pytest.mark.parametrize("depth", [0.003, 0.006, 0.009])
+def test_a_coarse_mesh_presses_back_as_one_twice_as_fine(coarse, fine, depth):
+    """Where its own rubber, without the near field, is 9 % firmer, and linear 10 % softer."""
     forces = []
-    for firm in (coarse, firm_cube(12)):
+    for firm in (coarse, fine):
         loads = pressed(firm, depth)
         linear = float(np.linalg.norm(loads[0].forces.sum(axis=0)))
         forces.append(linear * firm.under(loads).deepest)
-    assert forces[0] == pytest.approx(forces[1], rel=0.04)
+    assert forces[0] == pytest.approx(forces[1], rel=0.05)
 
 
 def test_a_touch_that_places_miss_is_not_told_by_them():
