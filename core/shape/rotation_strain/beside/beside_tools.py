@@ -92,7 +92,7 @@ def beside_tools(
     def at(where: Reached, begin: Array, trust: float) -> Beside:
         return _beside(linear, kept_out(solid, relaxation, where, linear, begin), energy, trust)
 
-    narrow = 1.0 - _on_way(_pressing(reached, moved), *WIDE)
+    narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
     if not narrow:
         return _trusted(at(reached, begin, 1.0))
     bed = reached.on_bed(moved, totals(linear), narrow)
@@ -110,8 +110,11 @@ def _trusted(found: Beside) -> Beside | None:
     return found if found.trust > 0.0 else None
 
 
-def _pressing(reached: Reached, moved: Array) -> float:
-    """On how many places the least of tools would press a linear body."""
+def _pressing(reached: Reached, loads: Sequence[FingerLoad], moved: Array) -> float:
+    """On how many places the least of tools would press a linear body; no fewer than on nodes."""
+    nodes = min(carrying(load.forces) for load in loads)
+    if nodes >= WIDE[1]:
+        return nodes
     pushes = reached.pushes(moved)
     return min(carrying(pushes[reached.which == one]) for one in range(len(reached.tools)))
 

@@ -27,6 +27,8 @@ PLACES = np.array([[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0
 FIRMNESS = 30.0
 # What lies within so many edges of a tool at rest may meet it.
 MARGIN_EDGES = 2.0
+# What lies farther from a tool than so many edges in the linear contact does not press in it.
+NEARLY = 0.5
 # Triangles at most: the compliance of what presses is factored again and again.
 MOST_TRIANGLES = 2000
 
@@ -154,7 +156,8 @@ class Reached:
         there = self.moved(linear)
         distance, out = self.distances(there)
         depth = np.einsum("pi,pi->p", out, there - self.rests) - distance
-        within = np.flatnonzero(depth > 0.0)
+        away = NEARLY * usual_edge(self.tools[0].body)
+        within = np.flatnonzero((depth > 0.0) & (distance < away))
         found = np.zeros_like(there)
         if len(within):
             yields = self._compliance_along(within, out[within])
