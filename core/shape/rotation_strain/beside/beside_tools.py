@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,16 +22,11 @@ from ...solid.free_solid import FreeSolid
 from ..finger_load import FingerLoad, Setting, on_free_nodes, totals
 from ..lying import Loose
 from ..relaxation import Relaxation
-from .kept_out import Kept, carrying, kept_out
+from .kept_out import ENOUGH, Kept, at_rest_beside, carrying
 from .reached import Reached, places_of
 
 Array = NDArray[np.float64]
 
-# What steps may leave, as a share of the work, where the body counts as at rest.
-ENOUGH = 0.015
-# Times that one which nothing holds, and which lies on all of its foot, goes on to there; and what
-# is left of one that goes astray.
-ROUNDS, ASTRAY = 2, 1.0
 # With so few places that would press a linear body a touch is hardly wider than triangles, with so
 # many it is; of one that nothing holds, as many press it.
 WIDE, WIDE_LYING = (12.0, 22.0), (8.0, 16.0)
@@ -90,7 +84,8 @@ def beside_tools(
     begin, energy = moved if start is None else start, 0.5 * float((forces * moved).sum())
 
     def at(where: Reached, begin: Array, trust: float) -> Beside:
-        return _beside(linear, kept_out(solid, relaxation, where, linear, begin), energy, trust)
+        kept = at_rest_beside(solid, relaxation, where, linear, begin)
+        return _beside(linear, kept, energy, trust)
 
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
     if not narrow:
@@ -103,7 +98,7 @@ def beside_tools(
     if found is None:
         return None
     # What is beneath is of the same law: as firm as the body was found to be.
-    return _trusted(at(bed.as_firm(max(found.share, SOFTEST)), found.kept.linear, resolved))
+    return _trusted(at(bed.on_springs(max(found.share, SOFTEST)), found.kept.linear, resolved))
 
 
 def _trusted(found: Beside) -> Beside | None:
@@ -149,13 +144,7 @@ def between_tools(
     reached = Reached.of(body, solid, loads, loose)
     if reached is None:
         return None
-    at = partial(kept_out, solid, relaxation, reached, loads, moved, loose, firmness)
-    kept = at(before)
-    for _ in range(ROUNDS):
-        if kept.left <= ENOUGH or kept.pressing <= WIDE_LYING[0]:
-            break
-        # What began too far off does not come back from where it went.
-        kept = at(kept if kept.left < ASTRAY else None)
+    kept = at_rest_beside(solid, relaxation, reached, loads, moved, loose, firmness, before)
     wide = _on_way(kept.pressing, *WIDE_LYING)
     return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
 

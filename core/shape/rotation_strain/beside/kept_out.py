@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,10 @@ Array = NDArray[np.float64]
 
 # What is missed as a share of the work, and steps.
 CLOSE, MOST_STEPS = 0.002, 120
+# What steps may leave where the body counts as at rest, and what is left of one that went astray.
+ENOUGH, ASTRAY = 0.015, 1.0
+# Times as firm as what holds places off, where they give on springs instead.
+STIFF = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +56,25 @@ class Kept:
     pushes: Array
     left: float
     steps: int
+
+
+def at_rest_beside(
+    solid: FreeSolid,
+    relaxation: Relaxation,
+    reached: Reached,
+    loads: Sequence[FingerLoad],
+    start: Array,
+    loose: Loose | None = None,
+    firmness: float = 1.0,
+    before: Kept | None = None,
+) -> Kept:
+    """As :func:`kept_out`; on stiff springs, where what is counted in goes to and fro."""
+    at = partial(kept_out, solid, relaxation, loads=loads, loose=loose, firmness=firmness)
+    kept = at(reached, start=start, before=before)
+    if reached.gives or kept.left <= CLOSE:
+        return kept
+    begin = kept.linear if kept.left < ASTRAY else start
+    return at(reached.on_springs(STIFF), start=begin)
 
 
 def kept_out(
@@ -87,7 +111,7 @@ def kept_out(
         None if loose is None else firmness * loose.dead,
         None if loose is None else (*fields_of(loose.motions), loose.gives.tolist()),
         None if loose is None else _held_by(loads, reached, start, before),
-        on_bed=reached.is_on_bed,
+        on_bed=reached.gives,
     )
     forces = reached.of_tools(pushes)
     pressing = min(carrying(pushes[reached.which == one]) for one in range(len(forces)))

@@ -51,7 +51,7 @@ class Reached:
     firmness : (p,), force over depth, N/m at 1 Pa.
     known : (p, 3), the same nodes among those of the compliance.
     compliance : (k, k, 3, 3) between these, m/N at 1 Pa.
-    is_on_bed : whether that is what they give, and not what holds them off until they do.
+    gives : whether they give way by that, and are not held off until they do not.
     """
 
     tools: Sequence[Setting]
@@ -64,7 +64,7 @@ class Reached:
     firmness: Array
     known: NDArray[np.int64]
     compliance: Array
-    is_on_bed: bool = False
+    gives: bool = False
 
     @classmethod
     def of(
@@ -131,11 +131,11 @@ class Reached:
             if not carried > 0.0:
                 return None
             firmer[own] = force / carried
-        return replace(self, firmness=self.firmness * firmer / share, is_on_bed=True)
+        return replace(self, firmness=self.firmness * firmer / share, gives=True)
 
-    def as_firm(self, times: float) -> Reached:
-        """Where places are so many times as firm."""
-        return replace(self, firmness=times * self.firmness)
+    def on_springs(self, times: float) -> Reached:
+        """Where each gives on a spring, so many times as firm as what holds it off here."""
+        return replace(self, firmness=times * self.firmness, gives=True)
 
     def distances(self, there: Array) -> tuple[Array, Array]:
         """Distances (p,) of places (p, 3) from their tools, negative within, and normals (p, 3)."""

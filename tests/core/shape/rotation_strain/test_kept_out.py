@@ -11,7 +11,7 @@ from palpate.core.contact.tool.tools import plate, rod, sphere
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.shape.felt import loads_of
 from palpate.core.shape.rotation_strain.beside.beside_tools import beside_tools
-from palpate.core.shape.rotation_strain.beside.kept_out import kept_out
+from palpate.core.shape.rotation_strain.beside.kept_out import CLOSE, STIFF, kept_out
 from palpate.core.shape.rotation_strain.beside.reached import PLACES, Reached
 from palpate.core.shape.rotation_strain.finger_load import on_free_nodes
 from palpate.core.shape.rotation_strain.firmness import FirmBody
@@ -117,6 +117,23 @@ def test_the_work_of_the_tool_is_what_the_body_holds(firm):
         forces.append(-found.forces[0, 2])
         moved = found.displacements
     assert np.trapezoid(forces, depths) == pytest.approx(firm.solid.energy(moved), rel=0.02)
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_on_stiff_springs_it_rests_as_where_pushes_are_counted_in(firm, name):
+    tool, position = TOOLS[name]
+    pose = Pose.at(position, np.eye(3) if name == "ball" else TURN)
+    loads = loads_of([press_tool(firm.body, tool, pose)])
+    start = firm.solid.linear(on_free_nodes(firm.solid, loads))
+    reached = Reached.of(firm.body, firm.solid, loads)
+    counted, sprung = (
+        kept_out(firm.solid, firm.relaxation, one, loads, start)
+        for one in (reached, reached.on_springs(STIFF))
+    )
+    assert sprung.left <= CLOSE
+    assert sprung.forces[0, 2] == pytest.approx(counted.forces[0, 2], rel=0.02)
+    off = np.abs(sprung.displacements - counted.displacements).max()
+    assert off < 0.02 * DEPTH
 
 
 @pytest.mark.parametrize("name", TOOLS)
