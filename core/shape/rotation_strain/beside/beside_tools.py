@@ -33,7 +33,7 @@ WIDE, WIDE_LYING = (12.0, 22.0), (8.0, 16.0)
 # So much of the linear contact's force comes back from places that miss a touch, from others so
 # much.
 MISSED, RESOLVED = 0.6, 0.8
-# How firm what is beneath places is taken to be at least, over a linear body.
+# Of a linear body's force: with less a body has gone past its tool, or the tool through it.
 SOFTEST = 0.1
 # Places at most that press for each node that the linear contact presses.
 PLACES_PER_NODE = 4.0
@@ -46,7 +46,8 @@ class Beside:
     Attributes
     ----------
     share : of the linear force, by which it presses back.
-    trust : 0 to 1, how far its places tell of the touch; 0 where it is not at rest, too.
+    trust : 0 to 1, how far its places tell of the touch; 0 where it is not at rest, or the tool
+        not against it, too.
     energy : elastic, of the linear press, J/Pa.
     kept : it.
     """
@@ -98,7 +99,7 @@ def beside_tools(
     if found is None:
         return None
     # What is beneath is of the same law: as firm as the body was found to be.
-    return _trusted(at(bed.on_springs(max(found.share, SOFTEST)), found.kept.linear, resolved))
+    return _trusted(at(bed.on_springs(found.share), found.kept.linear, resolved))
 
 
 def _trusted(found: Beside) -> Beside | None:
@@ -152,7 +153,8 @@ def between_tools(
 def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float) -> Beside:
     along = totals(loads)
     share = float((kept.forces * along).sum()) / float((along * along).sum())
-    return Beside(share, trust if kept.left <= ENOUGH else 0.0, energy, kept)
+    is_found = kept.left <= ENOUGH and share >= SOFTEST
+    return Beside(share, trust if is_found else 0.0, energy, kept)
 
 
 def _on_way(value: float, first: float, last: float) -> float:
