@@ -22,11 +22,13 @@ from ...solid.free_solid import FreeSolid
 from ..finger_load import FingerLoad, Setting, on_free_nodes, totals
 from ..lying import Loose
 from ..relaxation import Relaxation
-from .kept_out import ENOUGH, Kept, at_rest_beside, carrying
+from .kept_out import Kept, carrying, kept_out
 from .reached import Reached, places_of
 
 Array = NDArray[np.float64]
 
+# What steps may leave, as a share of the work, where the body counts as at rest.
+ENOUGH = 0.015
 # With so few places that would press a linear body a touch is hardly wider than triangles, with so
 # many it is; of one that nothing holds, as many press it.
 WIDE, WIDE_LYING = (12.0, 22.0), (8.0, 16.0)
@@ -85,7 +87,7 @@ def beside_tools(
     begin, energy = moved if start is None else start, 0.5 * float((forces * moved).sum())
 
     def at(where: Reached, begin: Array, trust: float) -> Beside:
-        kept = at_rest_beside(solid, relaxation, where, linear, begin)
+        kept = kept_out(solid, relaxation, where, linear, begin)
         return _beside(linear, kept, energy, trust)
 
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
@@ -145,7 +147,7 @@ def between_tools(
     reached = Reached.of(body, solid, loads, loose)
     if reached is None:
         return None
-    kept = at_rest_beside(solid, relaxation, reached, loads, moved, loose, firmness, before)
+    kept = kept_out(solid, relaxation, reached, loads, moved, loose, firmness, before)
     wide = _on_way(kept.pressing, *WIDE_LYING)
     return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
 

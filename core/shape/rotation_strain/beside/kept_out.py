@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +26,8 @@ Array = NDArray[np.float64]
 
 # What is missed as a share of the work, and steps.
 CLOSE, MOST_STEPS = 0.002, 120
-# What steps may leave where the body counts as at rest, and what is left of one that went astray.
-ENOUGH, ASTRAY = 0.015, 1.0
+# What is left of one that went astray.
+ASTRAY = 1.0
 # Times as firm as what holds places off, where they give on springs instead.
 STIFF = 10.0
 
@@ -58,25 +57,6 @@ class Kept:
     steps: int
 
 
-def at_rest_beside(
-    solid: FreeSolid,
-    relaxation: Relaxation,
-    reached: Reached,
-    loads: Sequence[FingerLoad],
-    start: Array,
-    loose: Loose | None = None,
-    firmness: float = 1.0,
-    before: Kept | None = None,
-) -> Kept:
-    """As :func:`kept_out`; on stiff springs, where what is counted in goes to and fro."""
-    at = partial(kept_out, solid, relaxation, loads=loads, loose=loose, firmness=firmness)
-    kept = at(reached, start=start, before=before)
-    if reached.gives or kept.left <= CLOSE:
-        return kept
-    begin = kept.linear if kept.left < ASTRAY else start
-    return at(reached.on_springs(STIFF), start=begin)
-
-
 def kept_out(
     solid: FreeSolid,
     relaxation: Relaxation,
@@ -87,7 +67,8 @@ def kept_out(
     firmness: float = 1.0,
     before: Kept | None = None,
 ) -> Kept:
-    """The body beside the tools of ``loads`` at the places that they reach.
+    """The body beside the tools of ``loads`` at the places that they reach; on stiff springs where
+    what is counted in goes to and fro.
 
     ``start``: linear displacements (f, 3) to begin from. ``loose``: how it goes as a whole between
     them, and so many times its dead loads press it beside; ``before``: of a loose body, beside the
@@ -115,7 +96,12 @@ def kept_out(
     )
     forces = reached.of_tools(pushes)
     pressing = min(carrying(pushes[reached.which == one]) for one in range(len(forces)))
-    return Kept(linear, moved, forces, pressing, reached.near, pushes, left, steps)
+    kept = Kept(linear, moved, forces, pressing, reached.near, pushes, left, steps)
+    if reached.gives or left <= CLOSE:
+        return kept
+    begin = linear if left < ASTRAY else start
+    sprung = reached.on_springs(STIFF)
+    return kept_out(solid, relaxation, sprung, loads, begin, loose, firmness)
 
 
 def carrying(forces: Array) -> float:
