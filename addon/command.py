@@ -21,6 +21,7 @@ from ..operators.bake import bake_session
 from ..operators.object import body_store
 from ..operators.press.press_once import press_several
 from ..operators.press.pressed import PressedFinger
+from ..operators.scene.chosen_alone import chosen_alone
 from ..operators.shape.drawn_shape import chosen_shape
 from .blend_file import opened_object, save
 from .command_options import set_up, set_young, within
@@ -133,7 +134,7 @@ def animate(arguments: argparse.Namespace) -> dict[str, object]:
     }
     before = set(thing.modifiers.keys())
     try:
-        with bpy.context.temp_override(object=thing, selected_objects=[thing]):
+        with chosen_alone(thing):
             bpy.ops.palpate.press_frames(keep=arguments.keep_as.upper(), **options)
     except RuntimeError as problem:
         reason = str(problem).strip().removeprefix("Error: ")

@@ -15,7 +15,8 @@ from ...core.rest.prop import WORLD
 from ...simulated.hand.options import SimulatedOptions
 from ...simulated.simulated_process import SimulatedDevice
 from ..object.drawn_body import DrawnBody
-from ..scene import drawn_surface, ray
+from ..place import ray
+from ..scene import drawn_surface
 from ..scene.body_frame import BodyFrame, as_point
 from ..tool.finger_tip import FingerTip
 from .device_plane import half_extents, upright_plane

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scene.chosen_alone import chosen_alone
 from . import layers, place_marks
 from .layer_groups import TRACTION
 from .layers import LIVE_NAME
@@ -72,8 +73,10 @@ def remove_leftovers() -> None:
 
 
 def leave_edit_mode(thing: bpy.types.Object) -> None:
-    """Leave edit mode, in which attributes cannot be removed."""
-    if thing.mode == "OBJECT":
+    """Leave edit mode, in which attributes cannot be removed; not that of another scene, which no
+    operator leaves.
+    """
+    if thing.mode == "OBJECT" or thing not in bpy.context.view_layer.objects.values():
         return
-    with bpy.context.temp_override(active_object=thing, object=thing):
+    with chosen_alone(thing):
         bpy.ops.object.mode_set(mode="OBJECT")

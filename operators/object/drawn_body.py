@@ -21,7 +21,8 @@ from ...core.fold.folds import Folds
 from ..carrier import body_source
 from ..layer import layers
 from ..layer.imprints import imprint_of
-from ..scene import drawn_surface, ray
+from ..place import ray
+from ..scene import drawn_surface
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import DrawnSurface
 from ..scene.object_handle import ObjectHandle

@@ -11,7 +11,7 @@ from ...core.contact.tool.pose import Pose
 from ...core.contact.tool.tools import Tool
 from ...core.mesh.tet_mesh import TetMesh
 from ...core.servo.session import FingerSnapshot
-from ..scene import ray
+from ..place import ray
 
 Array = NDArray[np.float64]
 

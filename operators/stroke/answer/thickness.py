@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ....core.grip.patch import Grip
 from ...object.drawn_body import DrawnBody
-from ...scene import ray
+from ...place import ray
 
 Array = NDArray[np.float64]
 

@@ -58,7 +58,7 @@ def test_a_transform_without_volume_is_refused_with_a_remedy(frames, scale):
 
 
 def test_a_ray_meets_what_it_was_aimed_at_and_only_from_the_front(installed, rng):
-    ray = part("operators.scene.ray")
+    ray = part("operators.place.ray")
     triangles = np.array([[0, 1, 2]])
     fronts = 0
     for _ in range(500):
