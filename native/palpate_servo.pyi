@@ -1173,7 +1173,7 @@ class Relaxation:
         dead: ArrayLike | None = None,
         loose: tuple[Sequence[ArrayLike], Sequence[ArrayLike], Sequence[float]] | None = None,
         holds: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, ArrayLike] | None = None,
-        on_bed: bool = False,
+        gives: bool = False,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float, int]:
         """The body at rest beside rigid ``tools``, with the position and the rotation of each, that
         press p ``places`` of its surface and never pull one.
@@ -1187,7 +1187,7 @@ class Relaxation:
         which it goes as it is pressed. ``compliance`` has these in it. ``holds``: of each place the
         displacement it is held at (p, 3), the tool's normal (p, 3), across which it is, Coulomb's
         coefficient (p,), 0 of smooth tools, and what is believed to push (p,) and to hold it aside
-        (p, 3) before that is found. ``on_bed``: places stay on springs, and so far within.
+        (p, 3) before that is found. ``gives``: places stay on springs, and so far within.
         """
 
 def device_coupling(rate_hz: int = 1000, *, encoder_step: float = 0.0) -> DeviceCoupling:

@@ -184,7 +184,7 @@ impl Relaxation {
         ))
     }
 
-    #[pyo3(signature = (linear, tools, places, compliance, work, close, most_steps, dead=None, loose=None, holds=None, on_bed=false))]
+    #[pyo3(signature = (linear, tools, places, compliance, work, close, most_steps, dead=None, loose=None, holds=None, gives=false))]
     #[expect(clippy::too_many_arguments, reason = "Python's names tell them apart")]
     fn kept_out<'py>(
         &self,
@@ -199,7 +199,7 @@ impl Relaxation {
         dead: Option<Rows<'_>>,
         loose: Option<GivenMotions<'_>>,
         holds: Option<GivenHolds<'_>>,
-        on_bed: bool,
+        gives: bool,
     ) -> PyResult<(Matrix<'py>, Matrix<'py>, Matrix<'py>, f64, usize)> {
         let nodes = self.nodes(py);
         let linear = given::rows("linear", &linear, nodes)?;
@@ -216,7 +216,7 @@ impl Relaxation {
         }
         let mut against =
             Against::new(places, tools, compliance, known, nodes).ok_or_else(unfit)?;
-        against.on_bed = on_bed;
+        against.gives = gives;
         let dead = dead.map_or_else(
             || Ok(vec![[0.0; 3]; nodes]),
             |forces| given::rows("dead", &forces, nodes),

@@ -87,7 +87,7 @@ def beside_tools(
     begin, energy = moved if start is None else start, 0.5 * float((forces * moved).sum())
 
     def at(where: Reached, begin: Array, trust: float) -> Beside:
-        kept = kept_out(solid, relaxation, where, linear, begin)
+        kept = kept_out(solid, relaxation, where, linear, moved, begin)
         return _beside(linear, kept, energy, trust)
 
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
@@ -147,7 +147,8 @@ def between_tools(
     reached = Reached.of(body, solid, loads, loose)
     if reached is None:
         return None
-    kept = kept_out(solid, relaxation, reached, loads, moved, loose, firmness, before)
+    begin = moved if before is None else before.linear
+    kept = kept_out(solid, relaxation, reached, loads, moved, begin, loose, firmness, before)
     wide = _on_way(kept.pressing, *WIDE_LYING)
     return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
 

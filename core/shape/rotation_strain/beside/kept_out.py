@@ -62,7 +62,8 @@ def kept_out(
     relaxation: Relaxation,
     reached: Reached,
     loads: Sequence[FingerLoad],
-    start: Array,
+    moved: Array,
+    begin: Array,
     loose: Loose | None = None,
     firmness: float = 1.0,
     before: Kept | None = None,
@@ -70,12 +71,13 @@ def kept_out(
     """The body beside the tools of ``loads`` at the places that they reach; on stiff springs where
     what is counted in goes to and fro.
 
-    ``start``: linear displacements (f, 3) to begin from. ``loose``: how it goes as a whole between
-    them, and so many times its dead loads press it beside; ``before``: of a loose body, beside the
-    same tools hardly elsewhere, from where it goes on.
+    ``moved``: displacements (f, 3) of a linear one under these loads; ``begin``: linear ones to
+    begin from. ``loose``: how it goes as a whole between the tools, and so many times its dead
+    loads press it beside; ``before``: of a loose body, under what its places were beside the same
+    tools hardly elsewhere.
     """
-    linear, moved, pushes, left, steps = relaxation.native.kept_out(
-        start if before is None else before.linear,
+    linear, there, pushes, left, steps = relaxation.native.kept_out(
+        begin,
         [(native_shape(by.tool), by.pose.position, by.pose.rotation) for by in reached.tools],
         (
             reached.free.ravel(),
@@ -86,22 +88,25 @@ def kept_out(
             reached.which,
         ),
         reached.compliance.reshape(-1, 3, 3),
-        float((on_free_nodes(solid, loads) * start).sum()),
+        float((on_free_nodes(solid, loads) * moved).sum()),
         CLOSE,
         MOST_STEPS,
         None if loose is None else firmness * loose.dead,
         None if loose is None else (*fields_of(loose.motions), loose.gives.tolist()),
-        None if loose is None else _held_by(loads, reached, start, before),
-        on_bed=reached.gives,
+        None if loose is None else _held_by(loads, reached, moved, before),
+        gives=reached.gives,
     )
     forces = reached.of_tools(pushes)
     pressing = min(carrying(pushes[reached.which == one]) for one in range(len(forces)))
-    kept = Kept(linear, moved, forces, pressing, reached.near, pushes, left, steps)
+    kept = Kept(linear, there, forces, pressing, reached.near, pushes, left, steps)
     if reached.gives or left <= CLOSE:
         return kept
-    begin = linear if left < ASTRAY else start
+    if left < ASTRAY:
+        begin, before = linear, kept
+    else:
+        begin = moved
     sprung = reached.on_springs(STIFF)
-    return kept_out(solid, relaxation, sprung, loads, begin, loose, firmness)
+    return kept_out(solid, relaxation, sprung, loads, moved, begin, loose, firmness, before)
 
 
 def carrying(forces: Array) -> float:

@@ -35,7 +35,7 @@ pub struct Against {
     counted: Vec<f64>,
     pulls: Vec<DVec3>,
     /// Whether places stay on springs, as on a bed: nothing is counted in.
-    pub on_bed: bool,
+    pub gives: bool,
     /// What the places did when the body was last looked at, and how it yields under that.
     doing: Vec<Doing>,
     yielding: Yielding,
@@ -70,7 +70,7 @@ impl Against {
             tools,
             compliance,
             known,
-            on_bed: false,
+            gives: false,
             doing: Vec::new(),
             yielding: Yielding::default(),
         })
@@ -85,7 +85,7 @@ impl Against {
 
     /// The work that is missing where places are still within, or not held as they are to be, J.
     pub fn missed(&self, warped: &Nodal) -> f64 {
-        if self.on_bed {
+        if self.gives {
             return 0.0;
         }
         (0..self.places.len())

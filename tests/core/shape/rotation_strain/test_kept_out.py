@@ -80,7 +80,7 @@ def kept(firm, touches):
     loads = loads_of(touches)
     start = firm.solid.linear(on_free_nodes(firm.solid, loads))
     reached = Reached.of(firm.body, firm.solid, loads)
-    return kept_out(firm.solid, firm.relaxation, reached, loads, start)
+    return kept_out(firm.solid, firm.relaxation, reached, loads, start, start)
 
 
 def test_two_tools_keep_it_out_together(firm):
@@ -127,7 +127,7 @@ def test_on_stiff_springs_it_rests_as_where_pushes_are_counted_in(firm, name):
     start = firm.solid.linear(on_free_nodes(firm.solid, loads))
     reached = Reached.of(firm.body, firm.solid, loads)
     counted, sprung = (
-        kept_out(firm.solid, firm.relaxation, one, loads, start)
+        kept_out(firm.solid, firm.relaxation, one, loads, start, start)
         for one in (reached, reached.on_springs(STIFF))
     )
     assert sprung.left <= CLOSE

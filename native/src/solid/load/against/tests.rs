@@ -135,7 +135,7 @@ fn on_a_bed_nothing_is_missed_however_deep_it_gives() {
     let mut against = pressed(None);
     let still = vec![[0.0; 3]; 3];
     assert!(against.missed(&still) > 0.0);
-    against.on_bed = true;
+    against.gives = true;
     assert!(against.missed(&still) == 0.0);
     assert!(against.pushes(&still).iter().all(|push| push.z < 0.0));
 }
