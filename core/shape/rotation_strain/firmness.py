@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 # which firmness is told.
 DEPTHS, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), 0.5, 0.75
 # Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
-CLOSE, MOST_STEPS = 0.002, 600
+CLOSE, MOST_STEPS = 0.001, 1000
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
 
