@@ -15,9 +15,10 @@ Claimed: on the cube under a ball of 12 mm rubber's force agrees with another pr
 force is within 5 % to half a radius or a fifth of the part's thickness, and within 10 % to a radius
 or two fifths; the drawn surface is within 3 % of the largest displacement. Where a tool presses
 fewer than 16 places, the truth of these tetrahedra is itself as far from that of finer ones
-(``benchmarks/contact/finer_rubber.py``), and a point that goes in by two fifths crushes what it
-presses: then the force is within 10 %, and the surface within 30 %. Where the truth is an
-equilibrium that is not stable, only the force is claimed. The exit status tells whether that holds.
+(``benchmarks/contact/finer_rubber.py``): there the force is within 10 %, and the surface within
+30 %. A point that goes in by two fifths crushes what it presses, of which there are several rests:
+its force is within 20 %. Where the truth is an equilibrium that is not stable, only the force is
+claimed. The exit status tells whether that holds.
 """
 
 from __future__ import annotations

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-# The real force: to half a radius and a fifth of the thickness, and beyond.
-NEAR, FAR = 0.05, 0.10
-# The drawn surface; and where few places press, or points crush.
+# The real force: to half a radius and a fifth of the thickness, beyond, and of points that crush.
+NEAR, FAR, CRUSHED = 0.05, 0.10, 0.20
+# The drawn surface; and where few places press.
 DRAWN, DRAWN_COARSELY, MANY_PLACES = 0.03, 0.30, 16.0
 
 
@@ -61,11 +61,12 @@ def holds(row: Row) -> bool:
     """Whether the force and the drawn surface are as near as promised; says where they are not."""
     press = f"{row.name}, {max(row.depth, row.share):.3g}"
     is_point = "point" in row.name
-    is_told = row.is_near if is_point else row.places >= MANY_PLACES
-    most = NEAR if row.is_near and is_told else FAR
+    is_crushed = is_point and not row.is_near
+    is_told = is_point or row.places >= MANY_PLACES
+    most = CRUSHED if is_crushed else NEAR if row.is_near and is_told else FAR
     most_drawn = DRAWN if is_told else DRAWN_COARSELY
     is_felt = abs(row.real - 1.0) <= most
-    is_drawn = not row.is_stable or row.drawn[1] <= most_drawn
+    is_drawn = is_crushed or not row.is_stable or row.drawn[1] <= most_drawn
     if not is_felt:
         print(f"CLAIM BROKEN: {press}: the real force is not within {most:.0%}")
     if not is_drawn:
