@@ -88,7 +88,7 @@ def kept_out(
             reached.which,
         ),
         reached.compliance.reshape(-1, 3, 3),
-        float((on_free_nodes(solid, loads) * moved).sum()),
+        float((on_free_nodes(solid, loads) * begin).sum()),
         CLOSE,
         MOST_STEPS,
         None if loose is None else firmness * loose.dead,
@@ -103,8 +103,6 @@ def kept_out(
         return kept
     if left < ASTRAY:
         begin, before = linear, kept
-    else:
-        begin = moved
     sprung = reached.on_springs(STIFF)
     return kept_out(solid, relaxation, sprung, loads, moved, begin, loose, firmness, before)
 
