@@ -21,7 +21,7 @@ from ..operators.bake import bake_session
 from ..operators.object import body_store
 from ..operators.press.press_once import press_several
 from ..operators.press.pressed import PressedFinger
-from ..operators.scene.chosen_alone import chosen_alone
+from ..operators.scene.active_object import chosen_alone
 from ..operators.shape.drawn_shape import chosen_shape
 from .blend_file import opened_object, save
 from .command_options import set_up, set_young, within

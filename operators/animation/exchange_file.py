@@ -19,6 +19,7 @@ from ...core.files.atomic_file import atomic_file
 from ...core.files.point_cache import CacheSize
 from ..layer import layers
 from ..played import mesh_cache
+from ..scene.active_object import chosen_alone
 from ..traction.frame_tractions import FrameTractions, shown_by
 
 TWIN, MESH = "palpate_surface", "palpate_surface_mesh"
@@ -142,23 +143,16 @@ def _twin(
     mesh = layers.drawn_mesh(thing).copy()
     mesh.name = MESH
     twin = bpy.data.objects.new(TWIN, mesh)
-    view_layer = bpy.context.view_layer
-    selected, active = [o for o in view_layer.objects if o.select_get()], view_layer.objects.active
     try:
         twin.shape_key_clear()
         scene.collection.objects.link(twin)
         twin.constraints.new("COPY_TRANSFORMS").target = thing
         mesh_cache.play(twin, cache, size)
-        for other in selected:
-            other.select_set(False)
-        twin.select_set(True)
-        yield twin
+        with chosen_alone(twin):
+            yield twin
     finally:
         bpy.data.objects.remove(twin)
         bpy.data.meshes.remove(mesh)
-        for other in selected:
-            other.select_set(True)
-        view_layer.objects.active = active
 
 
 def _export(

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..scene.chosen_alone import chosen_alone
+from ..scene.active_object import chosen_alone
 from . import layers, place_marks
 from .layer_groups import TRACTION
 from .layers import LIVE_NAME

@@ -25,11 +25,3 @@ class ObjectHandle:
         if likely is not None and likely.session_uid == self.session_uid:
             return likely
         return next((o for o in bpy.data.objects if o.session_uid == self.session_uid), None)
-
-
-def make_active(context: bpy.types.Context, thing: bpy.types.Object) -> None:
-    """Make an object the active one, and the only one selected."""
-    for other in context.selected_objects:
-        other.select_set(False)
-    thing.select_set(True)
-    context.view_layer.objects.active = thing

@@ -20,10 +20,11 @@ from ..reporting.acting import Acting
 from ..reporting.translated import reported, shown
 from ..reporting.wait_cursor import wait_cursor
 from ..scene import viewport
+from ..scene.active_object import make_active
 from ..scene.body_frame import BodyFrame
 from ..scene.drawn_surface import metres_per_unit
 from ..scene.modal_stay import ModalStay
-from ..scene.object_handle import ObjectHandle, make_active
+from ..scene.object_handle import ObjectHandle
 from ..scene.probe_drag import View
 from ..session import press_session
 from ..tool.tool_sizes import chosen_sizes
@@ -95,7 +96,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
         finally:
             self._stroke.close()
         if context.object != thing:
-            make_active(context, thing)
+            make_active(context.view_layer, thing)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
@@ -146,7 +147,7 @@ class PALPATE_OT_stroke(StrokeProperties, Acting, bpy.types.Operator):
             # What takes time is prepared before anything is changed, and a pinned place refused.
             self._last = self._stroke.stroked(self._drag.asked(touched.turn))
         if context.object != thing:
-            make_active(context, thing)
+            make_active(context.view_layer, thing)
         self._typed = TypedAmount(self._drag.motion)
         self._hang(thing)
         self._stay = ModalStay()

@@ -11,7 +11,7 @@ pytestmark = pytest.mark.usefixtures("palpate")
 
 @pytest.fixture
 def chosen_alone():
-    return part("operators.scene.chosen_alone").chosen_alone
+    return part("operators.scene.active_object").chosen_alone
 
 
 def test_what_was_active_and_selected_is_so_again(chosen_alone):

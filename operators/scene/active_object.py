@@ -1,11 +1,23 @@
-"""One object that operators act on for a while."""
+"""The object that operators act on: active, and the only one selected."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 import bpy
+
+
+def make_active(layer: bpy.types.ViewLayer, thing: bpy.types.Object) -> None:
+    """Make an object the active one, and the only one selected.
+
+    Raises
+    ------
+    RuntimeError
+        The view layer does not have it; nothing is changed.
+    """
+    layer.objects.active = thing
+    _select(layer, [thing])
 
 
 @contextmanager
@@ -22,16 +34,15 @@ def chosen_alone(thing: bpy.types.Object) -> Iterator[None]:
     """
     layer = bpy.context.view_layer
     active, selected = layer.objects.active, list(layer.objects.selected)
-    layer.objects.active = thing
+    make_active(layer, thing)
     try:
-        _select(layer, [thing])
         yield
     finally:
         layer.objects.active = active
         _select(layer, selected)
 
 
-def _select(layer: bpy.types.ViewLayer, things: list[bpy.types.Object]) -> None:
+def _select(layer: bpy.types.ViewLayer, things: Iterable[bpy.types.Object]) -> None:
     for one in list(layer.objects.selected):
         one.select_set(False, view_layer=layer)
     for one in things:
