@@ -934,11 +934,10 @@ class Servo:
         cannot be.
         """
 
-    def set_firmness(self, root: float, whole: float, reach: float) -> None:
-        """Force as 1 + root sqrt(W) + whole W times the linear one, W its elastic energy in J/Pa,
-        to W = reach, beyond which the factor stays; faded in. Zeros for a linear body. ValueError
-        for what is not finite. Not felt on bodies that nobody holds, nor on those that give way
-        with time.
+    def set_firmness(self, energies: Sequence[float], shares: Sequence[float]) -> None:
+        """Force as so many times the linear one where that holds such elastic energies, J/Pa: 1 at
+        none, straight between over the depth (the root), beyond the last as there; faded in.
+        Nothing for a linear body. At most 32, ascending and above zero; ValueError for others.
         """
 
     def start(self, device: Pointer | LinkDevice | HaplyDevice) -> None:

@@ -41,6 +41,7 @@ from palpate.tests.referees.energy_loops import (
     random_pairs,
 )
 from palpate.tests.referees.led_tips import Tip, led, tip_of
+from palpate.tests.ways.told_firmness import LINEAR, Told, told
 
 MOST = 1e-3
 CUT_OFF = 0.6
@@ -71,7 +72,6 @@ class Way:
 
 # Firmness of a body, one after the other: 1 + a s + b s^2, s the depth over that of the press, to
 # twice that.
-LINEAR = ((0.0, 0.0, 0.0),)
 LATE = ((0.0, 0.0), (0.25, 0.25), (-1.0 / 3.0, 0.0), (2.0, 4.0))
 REACH = 2.0
 
@@ -126,15 +126,13 @@ def books_of(native: Body, way: Way, loops: Sequence[Loop], tips: Sequence[Tip])
         path = np.stack([loop.path for loop in loops], axis=1)
         asked, _ = led(native, way.settings, loops, tips)(path)
         motors = way.cut_off * float(np.linalg.norm(asked, axis=2).max()) or None
-    firmnesses = late_on(native, loops, tips) if way.is_late else LINEAR
+    firmnesses = late_on(native, loops, tips) if way.is_late else (LINEAR,)
     if firmnesses is None:
         return None
     return books(loops, led(native, way.settings, loops, tips, motors, firmnesses))
 
 
-def late_on(
-    native: Body, loops: Sequence[Loop], tips: Sequence[Tip]
-) -> Sequence[tuple[float, float, float]] | None:
+def late_on(native: Body, loops: Sequence[Loop], tips: Sequence[Tip]) -> Sequence[Told] | None:
     """:data:`LATE` as it is told of a press as deep as the loops; None where they press nothing."""
     forces, _ = led(native, Settings(YOUNG_MODULUS), loops, tips)(
         np.stack([loop.press for loop in loops], axis=1)
@@ -143,7 +141,7 @@ def late_on(
     held = 0.5 * float(pressed) / YOUNG_MODULUS
     if held == 0.0:
         return None
-    return [(root / np.sqrt(held), whole / held, REACH**2 * held) for root, whole in LATE]
+    return [told(late, held, REACH) for late in LATE]
 
 
 def of_body(body: SoftBody, way: Way, count: int, seed: int) -> list[Books]:

@@ -35,7 +35,7 @@ LINEAR = Firmness()
 class Firmed(Protocol):
     """A servo, as far as it is told here."""
 
-    def set_firmness(self, root: float, whole: float, reach: float) -> None:
+    def set_firmness(self, energies: Sequence[float], shares: Sequence[float]) -> None:
         """As firmly as :class:`Firmness` says of these."""
 
 
@@ -56,8 +56,8 @@ class Firming:
 
     Between calls of :meth:`follow` a thread may be at work.
 
-    While fingers move, firmness is that of a press somewhat deeper, or of the deepest that was
-    looked at there; once they are at rest that of the very press, as of one without a clock.
+    Firmness is what all looks at a place have found: while fingers move at presses somewhat deeper,
+    once they are at rest at the very press, as of one without a clock.
     """
 
     servo: Firmed
@@ -103,7 +103,7 @@ class Firming:
             # What another shape said, or of another touch, is looked for anew.
             if self._looked.loads:
                 self._places.remember(self._looked.loads, found)
-                self._tell(found)
+                self._tell(self._places.at(self._looked.loads))
         rests, self._before = alike(loads, self._before, AT_REST), loads
         ahead = 1.0 if rests else self._ahead(loads)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
@@ -202,7 +202,8 @@ class Firming:
     def _tell(self, firmness: Firmness) -> None:
         if firmness != self._told:
             self._told = firmness
-            self.servo.set_firmness(firmness.root, firmness.whole, firmness.reach)
+            told = firmness.going_on()
+            self.servo.set_firmness(told.energies, told.shares)
 
 
 def _pushed(loads: Sequence[FingerLoad]) -> float:

@@ -14,7 +14,7 @@ from ..contact.touches import PointTouch, ToolTouch
 from ..grip.cells import cells_of
 from .rotation_strain.finger_load import FingerLoad, Setting
 from .rotation_strain.pressed import Firmness
-from .shapes import Shape, firmness_of
+from .shapes import Shape, pressed_by
 
 Array = NDArray[np.float64]
 
@@ -91,6 +91,6 @@ def felt(shape: Shape, touches: Sequence[One], young_modulus: float) -> Felt[One
     PalpateError
         They cannot be computed.
     """
-    firmness = firmness_of(shape, loads_of(touches), young_modulus)
-    share = firmness.deepest
-    return Felt(tuple(one.times(share) for one in touches), firmness)
+    found = pressed_by(shape, loads_of(touches), young_modulus)
+    share = found.firmness.deepest
+    return Felt(tuple(one.times(share) for one in touches), found.firmness)

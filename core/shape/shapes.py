@@ -19,7 +19,7 @@ from ..errors import PalpateError
 from ..sentence import Sentence
 from .paper.paper_shape import PaperShape
 from .rotation_strain.finger_load import FingerLoad
-from .rotation_strain.pressed import LINEAR, Firmness, Pressed
+from .rotation_strain.pressed import LINEAR, Pressed
 from .rotation_strain.rotation_strain_shape import MOST_FELT, RotationStrainShape
 
 ShapeName: TypeAlias = Literal["linear", "paper", "real"]
@@ -154,24 +154,14 @@ def is_felt(body: SoftBody) -> bool:
     return len(body.mesh.nodes) - len(body.fixed) <= MOST_FELT
 
 
-def firmness_of(shape: Shape, loads: Sequence[FingerLoad], young_modulus: float) -> Firmness:
-    """How much more firmly than a linear body this one presses back under these linear loads.
-
-    May take some tenths of a second; thread-safe.
-
-    Raises
-    ------
-    PalpateError
-        The shape cannot be computed.
-    """
-    return pressed_by(shape, loads, young_modulus).firmness
-
-
 def pressed_by(
     shape: Shape, loads: Sequence[FingerLoad], young_modulus: float, ahead: float = 1.0
 ) -> Pressed:
-    """The same, and where the body's free surface comes to rest, if that was found; of a press that
-    is deeper, ``ahead`` times.
+    """How much more firmly than a linear body this one presses back under these linear loads, and
+    where its free surface comes to rest, if that was found; of a press that is deeper, ``ahead``
+    times.
+
+    May take some tenths of a second; thread-safe.
 
     Raises
     ------

@@ -15,6 +15,7 @@ from palpate.core.body.soft_body import SoftBody
 from palpate.core.contact.tool.native_tool import NativeTip, native_tool
 from palpate.core.contact.tool.tools import Tool
 from palpate.core.servo.settings import Settings
+from palpate.tests.ways.told_firmness import LINEAR, Told
 
 from .energy_loops import ROUND, Follow, Loop
 
@@ -50,7 +51,7 @@ def led(
     loops: Sequence[Loop],
     tips: Sequence[Tip],
     motors: float | None = None,
-    firmnesses: Sequence[tuple[float, float, float]] = ((0.0, 0.0, 0.0),),
+    firmnesses: Sequence[Told] = (LINEAR,),
 ) -> Follow:
     """A finger for each loop, set down in the air where that begins: its front is led, and looks
     where the way goes in.

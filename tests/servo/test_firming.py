@@ -112,7 +112,7 @@ def looks(monkeypatch):
 
     def look(shape, loads, young_modulus, ahead):
         made.append(ahead)
-        return Pressed(Firmness(root=0.5 / ahead, reach=ahead**2), 1.0, None)
+        return Pressed(Firmness((ahead**2,), (1.5,)), 1.0, None)
 
     monkeypatch.setattr(firming_module, "pressed_by", look)
     return made

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from .finger_load import FingerLoad, are_near
-from .pressed import Firmness
+from .pressed import Firmness, through
 
 # So many are remembered, the last ones.
 MOST = 16
+# Of energies of a place that differ by a smaller factor the last found is kept; so many at most.
+APART, MOST_ENERGIES = 1.3, 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +32,18 @@ class FirmPlaces:
         self._known.append(_Known(loads, firmness))
 
     def at(self, loads: Sequence[FingerLoad]) -> Firmness:
-        """That of the deepest press there by the same fingers; where there is none a linear one."""
-        there = (known.firmness for known in self._known if are_near(known.loads, loads))
-        return max(there, key=lambda firmness: firmness.reach, default=Firmness())
+        """All that is known of presses there by the same fingers; where there is none, linear."""
+        points: list[tuple[float, float]] = []
+        for known in reversed(self._known):
+            if not are_near(known.loads, loads):
+                continue
+            found = known.firmness
+            points += [
+                (energy, share)
+                for energy, share in zip(found.energies, found.shares, strict=True)
+                if all(not 1.0 / APART < energy / other < APART for other, _ in points)
+            ]
+        return through(sorted(points)[-MOST_ENERGIES:])
 
     def forget(self) -> None:
         """All of them: the body is another one."""

@@ -9,8 +9,8 @@ forces stay in proportion, each of the tool's nodes is led. From the half and th
 
     G(s) = 1 + a s + b s^2,    s^2 = elastic energy of the linear press over that of the whole one
 
-So small presses are linear, the force is the slope of an energy, and what lies deeper than was
-looked at is as firm as the deepest.
+So small presses are linear, the force is the slope of an energy, and deeper than was looked at it
+goes on along its tangent.
 """
 
 from __future__ import annotations
@@ -128,8 +128,8 @@ class FirmBody:
         weight = float(np.linalg.norm(left) / np.linalg.norm(sums, axis=1).sum())
         energy = kept_out.energy
         share = (1.0 - weight) * kept_out.share + weight * known.at(energy)
-        half = HALF * HALF * energy
-        curve = through([(half, known.at(half)), (energy, share)])
+        way = [depth * depth * energy for depth in DEPTHS[: DEPTHS.index(BETWEEN)]]
+        curve = through([*((there, known.at(there)) for there in way), (energy, share)])
         beside = Pressed(curve, energy, kept_out.kept.displacements)
         return replace(blended(led, beside, kept_out.trust), found=found)
 
@@ -155,8 +155,7 @@ class FirmBody:
         deepest = max(known)
         is_whole = deepest == DEPTHS[-1]
         told = [
-            (depth * depth * whole.energy, known[depth])
-            for depth in sorted({min(HALF, deepest), deepest} - {0.0})
+            (depth * depth * whole.energy, known[depth]) for depth in sorted(set(known) - {0.0})
         ]
         moved = whole.met(self.solid, rest.displacements) if rest and is_whole else None
         return Pressed(replace(through(told), is_whole=is_whole), whole.energy, moved)

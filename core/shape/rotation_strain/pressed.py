@@ -16,48 +16,66 @@ Array = NDArray[np.float64]
 
 # Bounds of what is believed.
 LEAST, MOST = 0.1, 30.0
+# Depths over that of the reach: from where to there the slope is told, and how far it is followed.
+BEFORE, FARTHER = 0.75, (1.15, 1.3, 1.5)
 
 
 @dataclass(frozen=True)
 class Firmness:
-    """Firmness as a function of the elastic energy W of the linear press, at unit modulus.
+    """Firmness G as a function of the elastic energy W of the linear press, at unit modulus: 1 at
+    none, straight between those known over the depth, the root of W.
 
     Attributes
     ----------
-    root, whole : G is 1 + root sqrt(W) + whole W, W in J/Pa.
-    reach : W beyond which G stays.
+    energies, shares : G at some W, J/Pa, ascending.
     is_whole : whether it was found to the whole depth.
     """
 
-    root: float = 0.0
-    whole: float = 0.0
-    reach: float = 0.0
+    energies: tuple[float, ...] = ()
+    shares: tuple[float, ...] = ()
     is_whole: bool = True
 
     def at(self, energy: float) -> float:
-        """G of a linear press that holds ``energy``, J/Pa."""
-        known = min(max(energy, 0.0), self.reach)
-        return min(max(1.0 + self.root * math.sqrt(known) + self.whole * known, LEAST), MOST)
+        """G of a linear press that holds ``energy``, J/Pa; beyond those known that of the last."""
+        depths = np.sqrt([0.0, *self.energies])
+        return float(np.interp(math.sqrt(max(energy, 0.0)), depths, [1.0, *self.shares]))
 
     def times(self, share: float) -> Firmness:
         """The same to the same depth, where ``share`` of the energy is held so deep."""
-        return replace(
-            self,
-            root=self.root / math.sqrt(share),
-            whole=self.whole / share,
-            reach=self.reach * share,
-        )
+        return replace(self, energies=tuple(share * energy for energy in self.energies))
+
+    def going_on(self) -> Firmness:
+        """The same, and somewhat farther half as steeply as before: for fingers that go deeper."""
+        reach, deepest = self.reach, self.deepest
+        if not reach > 0.0:
+            return self
+        slope = 0.5 * (deepest - self.at(BEFORE * BEFORE * reach)) / (1.0 - BEFORE)
+        beyond = [(far * far * reach, deepest + slope * (1.0 - 1.0 / far)) for far in FARTHER]
+        told = through([*zip(self.energies, self.shares, strict=True), *beyond])
+        return replace(told, is_whole=self.is_whole)
+
+    @property
+    def reach(self) -> float:
+        """W of the deepest known, J/Pa."""
+        return max(self.energies, default=0.0)
 
     @property
     def deepest(self) -> float:
-        """G at the reach, and beyond."""
-        return self.at(self.reach)
+        """G there, and beyond."""
+        return self.shares[-1] if self.shares else 1.0
 
     @property
     def mean(self) -> float:
         """The mean of G from none to the reach: what is held there over the linear energy."""
-        known = self.reach
-        return 1.0 + 2.0 / 3.0 * self.root * math.sqrt(known) + 0.5 * self.whole * known
+        if not self.shares:
+            return 1.0
+        depths = np.sqrt([0.0, *self.energies])
+        shares = np.array([1.0, *self.shares])
+        # Simpson's rule, exact for G s of a G that is straight.
+        middle = (depths[1:] + depths[:-1]) * (shares[1:] + shares[:-1])
+        ends = depths * shares
+        sums = np.diff(depths) * (ends[1:] + ends[:-1] + middle) / 6.0
+        return float(2.0 * sums.sum() / self.reach)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,27 +120,21 @@ def blended(one: Pressed, other: Pressed, share: float) -> Pressed:
     if one.displacements is None or other.displacements is None:
         return other
 
-    def at_reach(of: Firmness) -> Array:
-        return np.array([of.root * math.sqrt(of.reach), of.whole * of.reach, of.reach])
-
-    parts = (1.0 - share) * at_reach(one.firmness) + share * at_reach(other.firmness)
-    root, whole, reach = parts.tolist()
+    before, found = one.firmness, other.firmness
+    reach = (1.0 - share) * before.reach + share * found.reach
+    parts = [energy / found.reach for energy in found.energies]
+    shares = [
+        (1.0 - share) * before.at(part * before.reach) + share * found.at(part * found.reach)
+        for part in parts
+    ]
     return Pressed(
-        Firmness(root / math.sqrt(reach), whole / reach, reach),
+        Firmness(tuple(part * reach for part in parts), tuple(shares)),
         other.energy,
         (1.0 - share) * one.displacements + share * other.displacements,
     )
 
 
 def through(known: Sequence[tuple[float, float]]) -> Firmness:
-    """The parabola over the depth through none, one or two energies with the firmness there,
-    ascending, and 1 at no energy.
-    """
-    if not known:
-        return Firmness()
-    reach = known[-1][0]
-    powers = [0.5, 1.0][: len(known)]
-    rows = [[(energy / reach) ** power for power in powers] for energy, _ in known]
-    found = np.linalg.solve(rows, [min(max(share, LEAST), MOST) - 1.0 for _, share in known])
-    root, whole = [*found, 0.0][:2]
-    return Firmness(root / math.sqrt(reach), whole / reach, reach)
+    """Through energies, ascending, with the firmness there, as far as that is believed."""
+    energies = tuple(energy for energy, _ in known)
+    return Firmness(energies, tuple(min(max(share, LEAST), MOST) for _, share in known))

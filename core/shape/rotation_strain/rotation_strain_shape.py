@@ -115,7 +115,7 @@ class RotationStrainShape:
     def pressed(
         self, loads: Sequence[FingerLoad], young_modulus: float, ahead: float = 1.0
     ) -> Pressed:
-        """How firmly it presses back, see :func:`.shapes.firmness_of`, and where its free surface
+        """How firmly it presses back, see :func:`.shapes.pressed_by`, and where its free surface
         comes to rest; linear and nowhere until prepared, and for a body of too many nodes.
         """
         made = self._made.result() if self._made.done() else None

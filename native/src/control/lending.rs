@@ -19,6 +19,8 @@ pub struct Lending {
     firmness: Firmness,
     /// That of the tick before.
     before: Firmness,
+    /// What comes.
+    told: Firmness,
     held: Held,
 }
 
@@ -31,7 +33,17 @@ impl Lending {
     /// A tick of `dt` s nearer to a firmness; where that is none, linear at once.
     pub fn lead(&mut self, to: Option<&Firmness>, dt: f64) {
         self.before = self.firmness;
-        self.firmness = to.map_or_else(Firmness::default, |to| self.firmness.faded(to, dt));
+        let Some(to) = to else {
+            (self.firmness, self.told) = (Firmness::default(), Firmness::default());
+            return;
+        };
+        if *to != self.told {
+            let now = self.held.unit * (1.0 + self.held.remembered).powi(2);
+            (self.firmness, self.told) = (self.firmness.beside(to, now), *to);
+        }
+        if !self.firmness.is_linear() || !to.is_linear() {
+            self.firmness.fade(to, dt);
+        }
     }
 
     /// What another firmness has put into the body in this tick, at whose end it holds so much, J: half of it
@@ -54,11 +66,7 @@ mod tests {
 
     #[test]
     fn what_is_lent_is_what_the_body_holds_in_the_end_beyond_the_work_done() {
-        let to = Firmness {
-            root: 0.2,
-            whole: 0.1,
-            reach: 4.0,
-        };
+        let to = Firmness::through(&[(1.0, 1.3), (4.0, 1.8)]).unwrap();
         let mut lending = Lending::default();
         let held = |unit: f64| Held {
             energy: unit,

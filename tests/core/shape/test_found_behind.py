@@ -12,7 +12,7 @@ from palpate.core.shape.rotation_strain.rotation_strain_shape import (
     FramePlan,
     RotationStrainShape,
 )
-from palpate.core.shape.shapes import firmness_of, pressed_by, shape
+from palpate.core.shape.shapes import pressed_by, shape
 
 MODULUS = 5_000.0
 
@@ -45,7 +45,7 @@ def test_at_rest_it_is_the_shape_and_the_force_of_the_press(bar, behind):
     found = behind.at_rest(loads)
     true = pressed_by(behind.shape, loads, MODULUS).displacements
     np.testing.assert_allclose(found.displacements, true, atol=1e-12)
-    assert found.share == firmness_of(behind.shape, loads, MODULUS).deepest
+    assert found.share == pressed_by(behind.shape, loads, MODULUS).firmness.deepest
     assert abs(found.share - 1.0) > 0.02
 
 

@@ -5,6 +5,7 @@ import pytest
 from palpate_servo.harness import SteppedFingers
 from referees.energy_loops import books, random_loops
 from referees.led_tips import Tip, led, tip_of
+from ways.told_firmness import LINEAR, told
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import drawn_loads, native_body, servo_on
@@ -33,8 +34,7 @@ def fingers_on(whole, start, firmness=None, settings=None):
     fingers = SteppedFingers(whole, start, settings or Settings(MODULUS))
     if firmness is not None:
         unit = held_by(whole, 0.004)
-        root, square = firmness
-        fingers.set_firmness(root / np.sqrt(unit), square / unit, DEEP**2 * unit)
+        fingers.set_firmness(*told(firmness, unit, DEEP))
     return fingers
 
 
@@ -69,11 +69,11 @@ def test_it_comes_and_goes_without_a_jump(whole):
     fingers = fingers_on(whole, down(-0.001))
     before = fingers.follow(np.stack([down(0.004)] * 100))[0][-1][0][2]
     unit = held_by(whole, 0.004)
-    fingers.set_firmness(0.25 / np.sqrt(unit), 0.25 / unit, 4.0 * unit)
+    fingers.set_firmness(*told(FIRMER, unit, DEEP))
     forces = np.append(before, fingers.follow(np.stack([down(0.004)] * 500))[0][:, 0, 2])
     assert forces[-1] / before == pytest.approx(1.5, rel=1e-3)
     assert np.abs(np.diff(forces)).max() < 0.02 * before
-    fingers.set_firmness(0.0, 0.0, 0.0)
+    fingers.set_firmness(*LINEAR)
     back = fingers.follow(np.stack([down(0.004)] * 1000))[0][:, 0, 2]
     assert np.abs(np.diff(back)).max() < 0.02 * before
     assert back[-1] == pytest.approx(before, rel=1e-6)
@@ -113,8 +113,8 @@ def books_on(body, tool, coupling, firmnesses, seed):
     found = []
     for loop in random_loops(nodes, mesh.surface_local_triangles, free, 8, seed):
         unit = 0.01 * loop.depth**2
-        told = [(root / np.sqrt(unit), whole / unit, DEEP**2 * unit) for root, whole in firmnesses]
-        follow = led(surface, settings, (loop,), (tip,), 3.0 if coupling else None, told)
+        known = [told(firmness, unit, DEEP) for firmness in firmnesses]
+        follow = led(surface, settings, (loop,), (tip,), 3.0 if coupling else None, known)
         found.append(books((loop,), follow))
     return [one for one in found if one is not None]
 
@@ -177,8 +177,7 @@ def test_one_that_comes_late_is_felt_on_the_way_in_and_kept_back_on_the_way_out(
 
     parts = [way(-0.001, 0.004)]
     forces = [fingers.follow(parts[0])[0][:, 0]]
-    root, square = firmness
-    fingers.set_firmness(root / np.sqrt(unit), square / unit, DEEP**2 * unit)
+    fingers.set_firmness(*told(firmness, unit, DEEP))
     for begin, end in ((0.004, 0.0041), (0.0041, 0.006), (0.006, -0.001)):
         parts.append(way(begin, end))
         forces.append(fingers.follow(parts[-1])[0][:, 0])
@@ -196,7 +195,12 @@ def test_one_that_comes_late_is_felt_on_the_way_in_and_kept_back_on_the_way_out(
 
 def test_a_firmness_that_is_no_number_is_refused(whole):
     servo = servo_on(whole, Settings(MODULUS))
-    with pytest.raises(ValueError, match="give finite numbers"):
-        servo.set_firmness(float("nan"), 0.0, 1.0)
-    with pytest.raises(ValueError, match="not below zero"):
-        servo.set_firmness(0.0, 0.0, -1.0)
+    for energies, shares in (
+        ([1.0], [float("nan")]),
+        ([-1.0], [1.0]),
+        ([2.0, 1.0], [1.0, 1.0]),
+        ([1.0, 2.0], [1.0]),
+        (np.arange(1.0, 34.0), np.ones(33)),
+    ):
+        with pytest.raises(ValueError, match=r"finite numbers .* ascend, 32 at most"):
+            servo.set_firmness(energies, shares)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from palpate_servo.harness import SteppedFingers
 from ways.round_trips import round_trip, work_against
+from ways.told_firmness import told
 
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.servo.session import drawn_loads, native_tool
@@ -37,8 +38,7 @@ def fingers_on(whole, path, tool, relaxation, firmness=None, unit=None, friction
     if tool is not None:
         fingers.set_tool(tool, np.eye(3))
     if firmness is not None:
-        root, square = firmness
-        fingers.set_firmness(root / np.sqrt(unit), square / unit, 4.0 * unit)
+        fingers.set_firmness(*told(firmness, unit))
     return fingers
 
 

@@ -101,7 +101,7 @@ def firm_in_servo(cube, ticks=1500):
     servo.follow(np.concatenate([way, np.repeat(down[None], ticks, 0)])[:, None])
     held = servo.snapshot().held
     assert held > 0.0
-    servo.set_firmness(0.25 / np.sqrt(held), 0.0, held)
+    servo.set_firmness([held], [1.25])
     servo.follow(np.repeat(down[None], ticks, 0)[:, None])
     return servo, down
 

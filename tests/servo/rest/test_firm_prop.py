@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies.laid import TIP
+from ways.told_firmness import told
 
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.rest.resting import Resting
@@ -23,8 +24,7 @@ def down(depth, ticks):
 
 
 def firm(servo, firmness, unit):
-    root, square = firmness
-    servo.set_firmness(root / np.sqrt(unit), square / unit, 4.0 * unit)
+    servo.set_firmness(*told(firmness, unit))
 
 
 def held_at(laid, depth):

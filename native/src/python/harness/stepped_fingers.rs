@@ -235,10 +235,10 @@ impl SteppedFingers {
         Ok(())
     }
 
-    fn set_firmness(&self, root: f64, whole: f64, reach: f64) -> PyResult<()> {
+    fn set_firmness(&self, energies: Vec<f64>, shares: Vec<f64>) -> PyResult<()> {
         let stepping = &mut locked(&self.0).stepping;
         let settings = Settings {
-            firmness: firmness(root, whole, reach)?,
+            firmness: firmness(&energies, &shares)?,
             ..stepping.settings
         };
         stepping.write(settings);

@@ -14,8 +14,8 @@ use crate::servo::paced::locked;
 
 impl Servo {
     /// Has the body be so firm.
-    pub(super) fn firm(&self, root: f64, whole: f64, reach: f64) -> PyResult<()> {
-        let settings = locked(&self.settings).firm(firmness(root, whole, reach)?);
+    pub(super) fn firm(&self, energies: &[f64], shares: &[f64]) -> PyResult<()> {
+        let settings = locked(&self.settings).firm(firmness(energies, shares)?);
         if let Some(running) = self.current() {
             running.set(settings);
         }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use crate::contact::cones::MAX_FINGERS;
 use crate::contact::touch::ContactMode;
 use crate::control::coupling::Coupling;
-use crate::control::firmness::Firmness;
+use crate::control::firmness::{Firmness, MOST_KNOTS};
 use crate::control::safety::Limits;
 use crate::creep::relaxation::Creep;
 use crate::creep::term::{MOST_TERMS, Term};
@@ -213,15 +213,16 @@ impl Chosen {
     }
 }
 
-/// How firm the body is, from numbers of J/Pa.
-pub fn firmness(root: f64, whole: f64, reach: f64) -> PyResult<Firmness> {
-    if [root, whole, reach].into_iter().all(f64::is_finite) && reach >= 0.0 {
-        Ok(Firmness { root, whole, reach })
-    } else {
-        Err(PyValueError::new_err(format!(
-            "firmness is {root}, {whole} to {reach}; give finite numbers, the last not below zero"
-        )))
-    }
+/// How firm the body is, from its firmness at energies, J/Pa.
+pub fn firmness(energies: &[f64], shares: &[f64]) -> PyResult<Firmness> {
+    let known: Vec<_> = energies.iter().copied().zip(shares.iter().copied()).collect();
+    let told = Firmness::through(&known).filter(|_| energies.len() == shares.len());
+    told.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "firmness is {shares:?} at {energies:?}; give as many finite numbers as energies, which are above zero \
+             and ascend, {MOST_KNOTS} at most"
+        ))
+    })
 }
 
 /// The surface, felt in the default mode.

@@ -101,8 +101,8 @@ impl Servo {
         Ok(())
     }
 
-    fn set_firmness(&self, root: f64, whole: f64, reach: f64) -> PyResult<()> {
-        self.firm(root, whole, reach)
+    fn set_firmness(&self, energies: Vec<f64>, shares: Vec<f64>) -> PyResult<()> {
+        self.firm(&energies, &shares)
     }
 
     fn start(&self, py: Python<'_>, device: DeviceSetup<'_>) -> PyResult<()> {

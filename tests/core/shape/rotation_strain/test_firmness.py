@@ -11,7 +11,7 @@ from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad
 from palpate.core.shape.rotation_strain.firmness import FirmBody
-from palpate.core.shape.rotation_strain.pressed import Firmness
+from palpate.core.shape.rotation_strain.pressed import FARTHER, Firmness, through
 from palpate.core.shape.rotation_strain.relaxation import relaxation
 from palpate.core.shape.solid.free_solid import FreeSolid
 from palpate.core.shape.solid.newton import equilibrium
@@ -129,8 +129,23 @@ def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
 
 
 def test_it_is_bounded():
-    assert Firmness(100.0, 0.0, 1.0).at(1.0) == 30.0
-    assert Firmness(-100.0, 0.0, 1.0).at(1.0) == 0.1
+    assert through([(1.0, -99.0), (4.0, 100.0)]).shares == (0.1, 30.0)
+
+
+def test_it_is_straight_over_the_depth_and_goes_on_half_as_steeply():
+    found = Firmness((1.0, 4.0), (1.2, 1.6))
+    assert [found.at(energy) for energy in (0.0, 0.25, 2.25, 9.0)] == pytest.approx(
+        [1, 1.1, 1.4, 1.6]
+    )
+    depths = np.linspace(0.0, 2.0, 4001)
+    held = np.trapezoid([2.0 * s * found.at(s * s) for s in depths], depths)
+    assert found.mean == pytest.approx(held / 4.0, rel=1e-6)
+    further = found.going_on()
+    assert further.at(4.0) == found.deepest
+    force = [s * further.at(s * s) for s in (2.0, 2.0 * FARTHER[0])]
+    linear = 2.0 * (FARTHER[0] - 1.0)
+    assert (force[1] - force[0]) / linear == pytest.approx(1.6 + 0.5 * 0.2 * 2.0)
+    assert Firmness().going_on() == Firmness()
 
 
 def test_a_wall_presses_a_block_that_would_turn_aside_under_its_forces(block):
