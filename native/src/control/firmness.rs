@@ -65,7 +65,9 @@ impl Firmness {
             energy.is_normal() && energy > 0.0 && energy.is_finite() && share.is_finite()
         });
         (ascend && are_finite && known.len() <= MOST_KNOTS).then(|| {
-            Self::of((known.iter()).map(|&(energy, share)| (energy.sqrt(), share.clamp(LEAST, MOST))))
+            Self::of(
+                (known.iter()).map(|&(energy, share)| (energy.sqrt(), share.clamp(LEAST, MOST))),
+            )
         })
     }
 
@@ -146,7 +148,9 @@ impl Firmness {
             all[count] = knot.depth;
             count += 1;
         }
-        let middle = self.knot_before(depth).min(self.count.saturating_sub(KEPT / 2));
+        let middle = self
+            .knot_before(depth)
+            .min(self.count.saturating_sub(KEPT / 2));
         let first = middle.saturating_sub(KEPT / 2).max(1);
         let own = self.knots[first..self.count].iter().map(|knot| knot.depth);
         for at in std::iter::once(depth).chain(own).take(KEPT) {

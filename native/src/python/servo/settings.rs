@@ -215,7 +215,11 @@ impl Chosen {
 
 /// How firm the body is, from its firmness at energies, J/Pa.
 pub fn firmness(energies: &[f64], shares: &[f64]) -> PyResult<Firmness> {
-    let known: Vec<_> = energies.iter().copied().zip(shares.iter().copied()).collect();
+    let known: Vec<_> = energies
+        .iter()
+        .copied()
+        .zip(shares.iter().copied())
+        .collect();
     let told = Firmness::through(&known).filter(|_| energies.len() == shares.len());
     told.ok_or_else(|| {
         PyValueError::new_err(format!(

@@ -144,7 +144,7 @@ def test_it_is_straight_over_the_depth_and_goes_on_half_as_steeply():
     assert further.at(4.0) == found.deepest
     force = [s * further.at(s * s) for s in (2.0, 2.0 * FARTHER[0])]
     linear = 2.0 * (FARTHER[0] - 1.0)
-    assert (force[1] - force[0]) / linear == pytest.approx(1.6 + 0.5 * 0.2 * 2.0)
+    assert (force[1] - force[0]) / linear == pytest.approx(1.6 + 0.5 * 0.4 * 2.0)
     assert Firmness().going_on() == Firmness()
 
 
