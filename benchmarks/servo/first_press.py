@@ -8,7 +8,8 @@ each frame beside that of the same depth, looked for by itself without a clock. 
 of the force in the end: how far off at most on the way in, and on the linear body; how far off
 0.15, 0.3 and 0.6 s after it came to rest; and at most on the way out and in again.
 
-Claimed: 25 on the way in, 20, 5 and 2 at rest, 5 afterwards. The exit status tells.
+Claimed: 15 on the way in (foam 50: it yields while it is looked for), 10, 6 and 6 at rest, and 20
+afterwards. The exit status tells.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ IN, RESTS, AGAIN = 0.3, 1.5, 2.3
 AFTER = (0.15, 0.3, 0.6)
 FRAME = 1.0 / 60.0
 LOOKS = 14
-MOST_IN, MOST_AT_REST, MOST_AFTERWARDS = 25.0, (20.0, 5.0, 2.0), 5.0
+MOST_IN, MOST_IN_FOAM, MOST_AT_REST, MOST_AFTERWARDS = 15.0, 50.0, (10.0, 6.0, 6.0), 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,10 +153,11 @@ def main() -> int:
     heads = ("on the way in", *(f"after {one:g} s" for one in AFTER), "afterwards", "linear")
     print(" " * 36 + "".join(f"{head:>15}" for head in heads))
     kept = True
-    most = np.array([MOST_IN, *MOST_AT_REST, MOST_AFTERWARDS])
     for name in chosen.bodies:
         for law in chosen.laws:
             bench = Bench.of(name, law)
+            most_in = MOST_IN_FOAM if law == "foam" else MOST_IN
+            most = np.array([most_in, *MOST_AT_REST, MOST_AFTERWARDS])
             for tip, tool in (("point", None), ("ball", sphere(RADIUS))):
                 one = pressing(bench, BODIES[name], tool)
                 found, linear = off(one.led(), *one.shares())
