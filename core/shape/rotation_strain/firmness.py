@@ -5,12 +5,8 @@ same depth: under forces of the same kind (the ones of a tool in proportion, tho
 sticks turned as they have to be) that move what is pressed as far, each by the work f would do on
 it. The work along a straight way then tells the force: G times the linear one. The body is led
 there quarter by quarter, each from the rest before; where it would turn aside under a tool whose
-forces stay in proportion, each of the tool's nodes is led. From the half and the end G goes as ::
-
-    G(s) = 1 + a s + b s^2,    s^2 = elastic energy of the linear press over that of the whole one
-
-So small presses are linear, the force is the slope of an energy, and deeper than was looked at it
-goes on along its tangent.
+forces stay in proportion, each of the tool's nodes is led. What is told is G at each of these
+depths. So small presses are linear, and the force is the slope of an energy.
 """
 
 from __future__ import annotations
@@ -128,7 +124,7 @@ class FirmBody:
         weight = float(np.linalg.norm(left) / np.linalg.norm(sums, axis=1).sum())
         energy = kept_out.energy
         share = (1.0 - weight) * kept_out.share + weight * known.at(energy)
-        way = [depth * depth * energy for depth in DEPTHS[: DEPTHS.index(BETWEEN)]]
+        way = [depth * depth * energy for depth in DEPTHS if depth <= HALF]
         curve = through([*((there, known.at(there)) for there in way), (energy, share)])
         beside = Pressed(curve, energy, kept_out.kept.displacements)
         return replace(blended(led, beside, kept_out.trust), found=found)

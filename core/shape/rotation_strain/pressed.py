@@ -51,8 +51,7 @@ class Firmness:
             return self
         slope = 0.5 * (deepest - self.at(BEFORE * BEFORE * reach)) / (1.0 - BEFORE)
         beyond = [(far * far * reach, deepest + slope * (1.0 - 1.0 / far)) for far in FARTHER]
-        told = through([*zip(self.energies, self.shares, strict=True), *beyond])
-        return replace(told, is_whole=self.is_whole)
+        return through([*zip(self.energies, self.shares, strict=True), *beyond])
 
     @property
     def reach(self) -> float:

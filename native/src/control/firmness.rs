@@ -60,10 +60,9 @@ impl Default for Firmness {
 impl Firmness {
     /// Through G at ascending energies, J/Pa, above zero; none where they are not, or too many.
     pub fn through(known: &[(f64, f64)]) -> Option<Self> {
-        let ascend = known.windows(2).all(|two| two[0].0 < two[1].0);
-        let are_finite = (known.iter()).all(|&(energy, share)| {
-            energy.is_normal() && energy > 0.0 && energy.is_finite() && share.is_finite()
-        });
+        let ascend = (known.windows(2)).all(|two| two[0].0.sqrt() < two[1].0.sqrt());
+        let are_finite = (known.iter())
+            .all(|&(energy, share)| energy > 0.0 && energy.is_normal() && share.is_finite());
         (ascend && are_finite && known.len() <= MOST_KNOTS).then(|| {
             Self::of(
                 (known.iter()).map(|&(energy, share)| (energy.sqrt(), share.clamp(LEAST, MOST))),

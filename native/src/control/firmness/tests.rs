@@ -14,6 +14,7 @@ fn it_is_as_told_at_the_knots_straight_between_them_and_stays_beyond() {
     assert!((firm.at(1.25 * 1.25) - 0.5 * (firm.at(1.0) + firm.at(2.25))).abs() < 1e-12);
     assert!((firm.at(0.0625) - 0.5 * (1.0 + firm.at(0.25))).abs() < 1e-12);
     assert_eq!((firm.at(4.0), firm.at(1e9)), (2.5, 2.5));
+    assert!((firm.at(4.0 - 1e-9) - firm.at(4.0 + 1e-9)).abs() < 1e-8);
 }
 
 #[test]
@@ -70,6 +71,8 @@ fn it_is_bounded_and_told_by_numbers_that_ascend() {
     assert_eq!(Firmness::default().mean(1.0, 0.0), 1.0);
     for wrong in [
         [(1.0, 1.0), (1.0, 1.0)],
+        // Energies that ascend, but their roots are the same.
+        [(1.0, 1.0), (1.0 + f64::EPSILON, 1.0)],
         [(0.0, 1.0), (1.0, 1.0)],
         [(-1.0, 1.0), (1.0, 1.0)],
         [(1.0, f64::NAN), (2.0, 1.0)],
