@@ -287,7 +287,7 @@ def _carried_about(stage: Stage, settled: np.ndarray) -> Wait:
     """It is grabbed by its side, lifted off the floor, and comes down beside where it was."""
     bpy.context.scene.palpate.stroke = "GRAB"
     here = stage.pixel((0.3, -1.0, 1.2))
-    yield from stage.drag([here, (here[0] + 60, here[1] + 90)], release=False)
+    yield from stage.drag([here, (here[0] + 60, here[1] + 150)], release=False)
     yield from stage.until(lambda: lowest() > 0.1, "the object in the air")
     yield from stage.picture("carried")
     yield from stage.event("LEFTMOUSE", "RELEASE", stage.mouse)
