@@ -209,7 +209,9 @@ def test_a_press_is_recorded_tick_by_tick(baked_file, capsys, tmp_path):
     assert strengths.max() == report["peak_output_force_n"] > 0.1
     names = np.array(recording.states)[samples["state"]]
     assert {"waiting", "free", "touching"} <= set(names)
-    assert names[strengths.argmax()] == "touching"
+    # A late tick may let go and ramp again at any moment; a force without a touch is wrong always.
+    assert not strengths[np.isin(names, ["waiting", "free"])].any()
+    assert strengths[names == "touching"].any()
 
 
 def test_a_recording_that_cannot_be_is_refused_before_the_press(baked_file, capsys, tmp_path):
