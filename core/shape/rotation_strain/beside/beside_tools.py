@@ -86,22 +86,25 @@ def beside_tools(
         return None
     begin, energy = moved if start is None else start, 0.5 * float((forces * moved).sum())
 
-    def at(where: Reached, begin: Array, trust: float) -> Beside:
+    def at(where: Reached, begin: Array, trust: float, of_linear: float = 1.0) -> Beside:
         kept = kept_out(solid, relaxation, where, linear, moved, begin)
-        return _beside(linear, kept, energy, trust)
+        return _beside(linear, kept, energy, trust, of_linear)
 
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
     if not narrow:
         return _trusted(at(reached, begin, 1.0))
     bed = reached.on_bed(moved, totals(linear), narrow)
-    resolved = 0.0 if bed is None else _on_way(_comes_back(bed, linear, moved), MISSED, RESOLVED)
+    back = 0.0 if bed is None else _comes_back(bed, linear, moved)
+    resolved = _on_way(back, MISSED, RESOLVED)
     if bed is None or not resolved:
         return None
-    found = _trusted(at(bed, begin, resolved))
+    # What these places miss of a linear body they miss of this one.
+    of_linear = 1.0 + narrow * (back - 1.0)
+    found = _trusted(at(bed, begin, resolved, of_linear))
     if found is None:
         return None
     # What is beneath is of the same law: as firm as the body was found to be.
-    return _trusted(at(bed.on_springs(found.share), found.kept.linear, resolved))
+    return _trusted(at(bed.on_springs(found.share), found.kept.linear, resolved, of_linear))
 
 
 def _trusted(found: Beside) -> Beside | None:
@@ -153,9 +156,12 @@ def between_tools(
     return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
 
 
-def _beside(loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float) -> Beside:
+def _beside(
+    loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float, of_linear: float = 1.0
+) -> Beside:
+    """``of_linear``: the share of the linear contact's force that the places tell."""
     along = totals(loads)
-    share = float((kept.forces * along).sum()) / float((along * along).sum())
+    share = float((kept.forces * along).sum()) / (of_linear * float((along * along).sum()))
     is_found = kept.left <= ENOUGH and share >= SOFTEST
     return Beside(share, trust if is_found else 0.0, energy, kept)
 

@@ -183,6 +183,15 @@ def test_firmness_begins_with_that_of_the_linear_body(firm):
     assert np.all(np.diff(shares) > 0.0)
 
 
+@pytest.mark.parametrize("aside", [(0.001, 0.002), (0.0035, 0.0015), (0.0045, 0.004)])
+def test_a_light_touch_of_few_triangles_is_as_firm_as_on_the_linear_body(firm, aside):
+    """Wherever its places lie in them."""
+    place = np.array([0.025 + aside[0], 0.025 + aside[1], 0.05])
+    for depth in (0.0003, 0.0006):
+        touch = press_tool(firm.body, sphere(0.008), Pose.at(place + (0.008 - depth) * UP))
+        assert firm.under(loads_of([touch])).deepest == pytest.approx(1.0, abs=0.02)
+
+
 def test_among_coarse_triangles_a_dent_is_deepest_where_it_is_pressed():
     """Where three places of a triangle are farther apart than a touch is wide."""
     mesh, fixed = paper_cube(cells=3)

@@ -99,7 +99,7 @@ def test_a_coarse_mesh_presses_back_as_one_twice_as_fine(coarse, fine, depth):
         loads = pressed(firm, depth)
         linear = float(np.linalg.norm(loads[0].forces.sum(axis=0)))
         forces.append(linear * firm.under(loads).deepest)
-    assert forces[0] == pytest.approx(forces[1], rel=0.05)
+    assert forces[0] == pytest.approx(forces[1], rel=0.06)
 
 
 def test_a_touch_that_places_miss_is_not_told_by_them():
