@@ -90,6 +90,7 @@ class Firming:
             What was looked for cannot be computed.
         """
         loads = self.pressing(snapshot)
+        rests, self._before = alike(loads, self._before, AT_REST), loads
         is_other, self._shape = shape is not self._shape, shape
         if is_other:
             self._places.forget()
@@ -104,7 +105,6 @@ class Firming:
             if self._looked.loads:
                 self._places.remember(self._looked.loads, found)
                 self._tell(self._places.at(self._looked.loads))
-        rests, self._before = alike(loads, self._before, AT_REST), loads
         ahead = 1.0 if rests else self._ahead(loads)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
             return

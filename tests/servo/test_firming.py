@@ -94,15 +94,25 @@ def test_a_linear_shape_leaves_it_linear(cube_body, servo, real, eventually):
 
 
 class AtOnce:
-    """Does what it is given before it goes on."""
+    """Does what it is given before it goes on, or where it ``waits`` when it is told to."""
+
+    def __init__(self):
+        self.waits, self.finish = False, None
 
     def submit(self, work, *given):
         done = Future()
-        done.set_result(work(*given))
+        self.finish = lambda: done.set_result(work(*given))
+        if not self.waits:
+            self.finish()
         return done
 
     def shutdown(self, **_):
         pass
+
+
+@pytest.fixture
+def worker():
+    return AtOnce()
 
 
 @pytest.fixture
@@ -119,14 +129,14 @@ def looks(monkeypatch):
 
 
 @pytest.fixture
-def pressed_to(cube_body):
+def pressed_to(cube_body, worker):
     """Leads a point to depths, m, by a place of the cube's top, and follows it at each of them; the
     firmness in the end.
     """
     native = native_body(cube_body, whole=True)
     above = np.array([[0.025, 0.025, 0.06]])
     servo = SteppedFingers(native, above, Settings(cube_body.young_modulus))
-    firming = Firming(servo, cube_body, _worker=AtOnce())
+    firming = Firming(servo, cube_body, _worker=worker)
     linear = LinearShape(cube_body)
 
     def press(*depths, at=(0.025, 0.025), shape=linear):
@@ -141,6 +151,17 @@ def pressed_to(cube_body):
 def test_it_looks_as_much_deeper_as_fingers_have_gone_since_the_last_look(looks, pressed_to):
     pressed_to(-0.001, 0.001, 0.002, 0.003, 0.0031, 0.006)
     assert looks == pytest.approx([1.2, 1.5, 4 / 3, 1.5])
+
+
+def test_a_finger_that_came_to_rest_during_a_look_is_looked_at_where_it_rests(
+    worker, looks, pressed_to
+):
+    worker.waits = True
+    pressed_to(0.002, 0.008, 0.008)
+    worker.finish()
+    worker.waits = False
+    pressed_to(0.008)
+    assert looks[-1] == 1.0
 
 
 def test_what_was_found_at_a_place_is_known_when_a_finger_comes_back(cube_body, looks, pressed_to):
