@@ -97,6 +97,8 @@ class Firming:
         if not loads or is_other:
             self._looked = _Look()
             self._tell(LINEAR)
+        elif self._told == LINEAR:
+            self._tell(self._places.at(loads))
         if self._finding is not None:
             if not self._finding.done():
                 return

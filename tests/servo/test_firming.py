@@ -181,6 +181,28 @@ def test_what_was_found_at_a_place_is_known_when_a_finger_comes_back(cube_body, 
     assert len(looks) == known + 3
 
 
+def test_beside_a_node_a_place_is_known_from_any_triangle(cube_body, looks, pressed_to):
+    node, turns = np.array([0.025, 0.025]), np.arange(0.5, 6.0)
+    around = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    assert np.isclose(cube_body.mesh.nodes[:, :2], node).all(axis=1).any()
+    pressed_to(0.002, 0.004, 0.004, at=node + 0.0004 * around[0])
+    known = len(looks)
+    for way in around:
+        assert pressed_to(-0.001, 0.002, 0.0021, at=node + 0.0004 * way) > 1.1
+    assert len(looks) == known
+
+
+def test_what_is_known_is_told_while_it_looks_elsewhere(worker, looks, pressed_to):
+    here, there = (0.025, 0.025), (0.04, 0.012)
+    pressed_to(0.002, 0.004, 0.004, at=here)
+    worker.waits = True
+    pressed_to(-0.001, 0.003, at=there)
+    known = len(looks)
+    assert pressed_to(-0.001, 0.003, 0.003, at=here) > 1.2
+    assert len(looks) == known
+    worker.finish()
+
+
 # Tools, and how deep they go: a plate's edges come to rest in one way where they are in by no more
 # than they are rounded.
 TIPS = {

@@ -15,7 +15,7 @@ from ..solid.free_solid import FreeSolid
 
 Array = NDArray[np.float64]
 
-# Share of the fewer nodes that presses at one place have in common.
+# Share of the forces on nodes that presses at one place have in common, of that on the fewer.
 SHARED = 0.5
 
 
@@ -113,8 +113,15 @@ def _is_near(one: FingerLoad, other: FingerLoad) -> bool:
     are_held = (one.let_go is None) == (other.let_go is None)
     if one.sticks != other.sticks or not (are_held and meet_alike(one.by, other.by)):
         return False
-    shared = len(np.intersect1d(one.nodes, other.nodes))
-    return shared >= SHARED * min(len(one.nodes), len(other.nodes))
+    pairs = [(one, other), (other, one)]
+    return all(_lies_on(*pair) for pair in pairs if len(pair[0].nodes) <= len(pair[1].nodes))
+
+
+def _lies_on(one: FingerLoad, other: FingerLoad) -> bool:
+    """By the forces, so that a point by a node is near to itself in any triangle about that."""
+    sizes = np.linalg.norm(one.forces, axis=1)
+    on_it = np.isin(one.nodes, other.nodes)
+    return bool(sizes[on_it].sum() >= SHARED * sizes.sum())
 
 
 def meet_alike(one: Setting | None, other: Setting | None) -> bool:
