@@ -86,25 +86,29 @@ def beside_tools(
         return None
     begin, energy = moved if start is None else start, 0.5 * float((forces * moved).sum())
 
-    def at(where: Reached, begin: Array, trust: float, of_linear: float = 1.0) -> Beside:
+    along = totals(linear)
+
+    def at(where: Reached, begin: Array, trust: float, told: Array) -> Beside:
         kept = kept_out(solid, relaxation, where, linear, moved, begin)
-        return _beside(linear, kept, energy, trust, of_linear)
+        return _beside(along, told, kept, energy, trust)
 
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
     if not narrow:
-        return _trusted(at(reached, begin, 1.0))
-    bed = reached.on_bed(moved, totals(linear), narrow)
-    back = 0.0 if bed is None else _comes_back(bed, linear, moved)
-    resolved = _on_way(back, MISSED, RESOLVED)
-    if bed is None or not resolved:
+        return _trusted(at(reached, begin, 1.0, along))
+    bed = reached.on_bed(moved, along, narrow)
+    if bed is None:
+        return None
+    comes_back = bed.of_tools(bed.pushes(moved))
+    resolved = _on_way(_least_share(comes_back, along), MISSED, RESOLVED)
+    if not resolved:
         return None
     # What these places miss of a linear body they miss of this one.
-    of_linear = 1.0 + narrow * (back - 1.0)
-    found = _trusted(at(bed, begin, resolved, of_linear))
+    told = along + narrow * (comes_back - along)
+    found = _trusted(at(bed, begin, resolved, told))
     if found is None:
         return None
     # What is beneath is of the same law: as firm as the body was found to be.
-    return _trusted(at(bed.on_springs(found.share), found.kept.linear, resolved, of_linear))
+    return _trusted(at(bed.on_springs(found.share), found.kept.linear, resolved, told))
 
 
 def _trusted(found: Beside) -> Beside | None:
@@ -120,11 +124,9 @@ def _pressing(reached: Reached, loads: Sequence[FingerLoad], moved: Array) -> fl
     return min(carrying(pushes[reached.which == one]) for one in range(len(reached.tools)))
 
 
-def _comes_back(reached: Reached, loads: Sequence[FingerLoad], moved: Array) -> float:
-    """The share of the linear contact's forces that places tell of a linear body, the least."""
-    along = totals(loads)
-    told = (reached.of_tools(reached.pushes(moved)) * along).sum(axis=1)
-    return float((told / (along * along).sum(axis=1)).min())
+def _least_share(told: Array, along: Array) -> float:
+    """The share of the forces ``along`` (k, 3) that those ``told`` (k, 3) are, the least."""
+    return float(((told * along).sum(axis=1) / (along * along).sum(axis=1)).min())
 
 
 def between_tools(
@@ -153,15 +155,13 @@ def between_tools(
     begin = moved if before is None else before.linear
     kept = kept_out(solid, relaxation, reached, loads, moved, begin, loose, firmness, before)
     wide = _on_way(kept.pressing, *WIDE_LYING)
-    return _beside(loads, kept, 0.5 * float((forces * moved).sum()), wide)
-
-
-def _beside(
-    loads: Sequence[FingerLoad], kept: Kept, energy: float, trust: float, of_linear: float = 1.0
-) -> Beside:
-    """``of_linear``: the share of the linear contact's force that the places tell."""
     along = totals(loads)
-    share = float((kept.forces * along).sum()) / (of_linear * float((along * along).sum()))
+    return _beside(along, along, kept, 0.5 * float((forces * moved).sum()), wide)
+
+
+def _beside(along: Array, told: Array, kept: Kept, energy: float, trust: float) -> Beside:
+    """``along``: forces (k, 3) of the linear contact; ``told``: of its places on a linear body."""
+    share = float((kept.forces * along).sum()) / float((told * along).sum())
     is_found = kept.left <= ENOUGH and share >= SOFTEST
     return Beside(share, trust if is_found else 0.0, energy, kept)
 
