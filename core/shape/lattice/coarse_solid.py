@@ -23,7 +23,6 @@ from ...law.of_material import law_of
 from ...mesh.tet_mesh import TetMesh
 from ...stiffness.assembly import lame_parameters
 from ..solid.solid import Solid
-from ..solid.springs import Springs
 from ..solid.strain_term import StrainTerm
 from .lattice import CORNERS, Lattice
 
@@ -49,13 +48,13 @@ class CoarseSolid:
     ----------
     lattice : c nodes, p parts.
     solid : its strain energy.
-    springs : its pins, and what holds what the strains do not see.
+    springs : csr (c, c), its pins, and what holds what the strains do not see.
     part_modulus : (p,), mean factor of Young's modulus.
     """
 
     lattice: Lattice
     solid: Solid
-    springs: Springs
+    springs: csr_array
     part_modulus: NDArray[np.float64]
 
     @classmethod
@@ -96,11 +95,11 @@ class CoarseSolid:
             )
         stiffness = shear * lattice.edge * part_modulus
         unseen = stiffness * part_volumes / lattice.edge**3
-        springs = _pins(lattice, mesh, fixed, stiffness) + _unseen(lattice, unseen)
+        springs = _pins(lattice, mesh, fixed, PIN_STIFFNESS * stiffness) + _unseen(lattice, unseen)
         return cls(
             lattice,
             Solid(tuple(terms), lattice.node_count, law or law_of(poisson_ratio)),
-            Springs(springs),
+            springs,
             part_modulus,
         )
 
@@ -108,7 +107,7 @@ class CoarseSolid:
     def stiffness(self) -> csr_array:
         """At rest, springs included, (3c, 3c)."""
         at_rest = self.solid.tangent(np.zeros((self.lattice.node_count, 3)))
-        return csr_array(at_rest + by_axes(self.springs.matrix))
+        return csr_array(at_rest + by_axes(self.springs))
 
 
 def by_axes(matrix: csr_array) -> csr_array:
@@ -160,16 +159,9 @@ def _part_means(shares: NDArray[np.float64]) -> csr_array:
 def _pins(
     lattice: Lattice, mesh: TetMesh, fixed: NDArray[np.int64], stiffness: NDArray[np.float64]
 ) -> csr_array:
-    """The springs of pinned nodes, csr (c, c); ``stiffness`` (p,) of a part's pins is 1."""
-    return tied(lattice, mesh, fixed, PIN_STIFFNESS * stiffness)
-
-
-def tied(
-    lattice: Lattice, mesh: TetMesh, nodes: NDArray[np.int64], stiffness: NDArray[np.float64]
-) -> csr_array:
-    """Springs csr (c, c) that hold a body's ``nodes`` (k,), by part of ``stiffness`` (p,)."""
-    held = lattice.interpolation(mesh.nodes[nodes], lattice.node_parts[nodes])
-    return csr_array(held.T @ diags_array(spring_of_each(lattice, nodes, stiffness)) @ held)
+    """The springs of pinned nodes (k,), csr (c, c), by part of ``stiffness`` (p,)."""
+    held = lattice.interpolation(mesh.nodes[fixed], lattice.node_parts[fixed])
+    return csr_array(held.T @ diags_array(spring_of_each(lattice, fixed, stiffness)) @ held)
 
 
 def spring_of_each(

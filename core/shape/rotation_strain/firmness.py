@@ -23,7 +23,7 @@ from ..solid.free_solid import FreeSolid
 from .beside.beside_tools import beside_tools, between_tools
 from .finger_load import FingerLoad, let_go, on_free_nodes, totals
 from .linear_press import LinearPress
-from .pressed import LINEAR, Firmness, Found, Pressed, blended, through
+from .pressed import LINEAR, Found, Pressed, blended, through
 from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
@@ -45,20 +45,14 @@ class FirmBody:
     solid: FreeSolid
     relaxation: Relaxation
 
-    def under(self, loads: Sequence[FingerLoad]) -> Firmness:
-        """Firmness of a press whose linear forces at unit modulus are ``loads``, to its depth.
-
-        Where the body finds no rest under forces that would be right, to the depth to which it did:
-        without any the linear one.
-        """
-        return self.pressed(loads).firmness
-
     def pressed(
         self, loads: Sequence[FingerLoad], ahead: float = 1.0, before: Found | None = None
     ) -> Pressed:
-        """The same, and the body at rest there; ``ahead``, where the press is that much deeper.
+        """A press whose linear forces at unit modulus are ``loads``: firmness to its depth, and the
+        body at rest there; ``ahead``, where it is that much deeper.
 
-        ``before``: of a press by the same tools at the same places.
+        Where the body finds no rest under forces that would be right, to the depth to which it did:
+        without any the linear one. ``before``: of a press by the same tools at the same places.
         """
         energy = self._energy(loads) if loads else 0.0
         if not energy > 0.0:

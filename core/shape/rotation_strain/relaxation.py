@@ -33,7 +33,6 @@ from ...law.neo_hookean import NeoHookean
 from ...law.ogden import Ogden
 from ...law.principal import Power
 from ..solid.free_solid import FreeSolid, linear_under
-from ..solid.springs import Springs
 from ..solid.strain_term import StrainTerm
 
 Array = NDArray[np.float64]
@@ -110,7 +109,7 @@ class Relaxation:
         law: Law,
         factor: CholeskyFactor,
         positions: Array,
-        springs: Springs | None = None,
+        springs: csr_array | None = None,
         motions: RigidMotions | None = None,
     ) -> Relaxation:
         """Relaxation of the terms of a solid on its free nodes, the first of which has shear.
@@ -119,6 +118,8 @@ class Relaxation:
         ----------
         factor : of the stiffness of the terms and the springs; without pins with a hold.
         positions : (f, 3), at rest.
+        springs : S (f, f) at unit modulus, symmetric, of an energy u.S u / 2 alike along all axes;
+            a turn of all nodes that belong together may cost nothing.
         motions : of a body without pins.
 
         Raises
@@ -131,7 +132,7 @@ class Relaxation:
             factor.flat(np.float32),
             _poisson(terms[0], springs, positions, motions).flat(np.float64, every=3),
             law=_powers(law),
-            springs=None if springs is None else _rows(springs.matrix),
+            springs=None if springs is None else _rows(springs),
             motions=None if motions is None else (*fields_of(motions), [0.0] * 6),
         )
         return cls(native, factor, motions)
@@ -222,7 +223,7 @@ def fields_of(motions: RigidMotions) -> tuple[list[Array], list[Array]]:
 
 
 def _poisson(
-    term: StrainTerm, springs: Springs | None, positions: Array, motions: RigidMotions | None
+    term: StrainTerm, springs: csr_array | None, positions: Array, motions: RigidMotions | None
 ) -> CholeskyFactor:
     """Factor of the warp's equation, for three axes: each number of it three times.
 
@@ -231,7 +232,7 @@ def _poisson(
     weights = np.repeat(term.weighted_moduli[1], 3)
     matrix = csr_array(term.gradients.T @ diags_array(weights) @ term.gradients)
     if springs is not None:
-        matrix = csr_array(matrix + springs.matrix)
+        matrix = csr_array(matrix + springs)
     if motions is not None:
         # What gradients ask for balances, so that one held node takes no force.
         matrix[0, 0] += float(np.median(matrix.diagonal()))

@@ -102,16 +102,6 @@ class FreeSolid:
         return linear_under(self.factor, self.motions, nodal_forces)
 
     @cached_property
-    def rest_blocks(self) -> NDArray[np.float64]:
-        """The blocks (m, 3, 3) of the stiffness at rest, where ``solid.pattern`` says."""
-        return self.solid.tangent_blocks(np.zeros((self.node_count, 3)))
-
-    @cached_property
-    def stiffness(self) -> csr_array:
-        """K, the stiffness at rest, (3f, 3f)."""
-        return self.tangent(np.zeros((self.node_count, 3)))
-
-    @cached_property
     def elimination(self) -> RepeatedElimination:
         """Symbolic factorization of the tangents, which have one pattern."""
         pattern = self.solid.pattern
@@ -139,9 +129,10 @@ class FreeSolid:
 
     @property
     def _held_blocks(self) -> NDArray[np.float64]:
+        pattern = self.solid.pattern
+        blocks = self.solid.tangent_blocks(np.zeros((self.node_count, 3)))
         if self.motions is None:
-            return self.rest_blocks
-        pattern, blocks = self.solid.pattern, self.rest_blocks.copy()
+            return blocks
         own = np.flatnonzero(pattern.rows == pattern.columns)
         firmness = float(np.median(np.einsum("mii->mi", blocks[own])))
         for node, springs in zip(*hold(self.positions, firmness), strict=True):

@@ -19,12 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_array, coo_array, csr_array, diags_array
 
-from ...law.law import Law
+from ...law.law import Law, Stressed
 from ...mesh.tet_mesh import TetMesh
 from ...stiffness.assembly import lame_parameters, shape_gradients
 from ...stiffness.formulation import LINEAR, formulation_checked
 from ...stiffness.strain_smoothing import SmoothingDomains, edge_domains, node_domains, tet_domains
-from .strain_energy import StrainEnergy
 from .strain_term import StrainTerm
 from .tangent_pattern import TangentPattern
 
@@ -46,18 +45,20 @@ class Solid:
 
     def energy(self, displacements: NDArray[np.float64]) -> float:
         """Strain energy at displacements (N, 3), joule at unit modulus."""
-        return self._energy.stressed(displacements.T).energy
+        return sum(float(there.density.sum()) for there in self._stressed(displacements))
 
     def forces(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
         """Forces (N, 3) that hold the body at displacements (N, 3), newton at unit modulus.
 
         The gradient of :meth:`energy`; in equilibrium they are the forces from outside.
         """
-        return self._energy.forces(self._energy.stressed(displacements.T)).T
+        found = np.zeros((3, self.node_count))
+        for term, there in zip(self.terms, self._stressed(displacements), strict=True):
+            found += term.by_component.nodal(there.stress)
+        return found.T
 
-    @cached_property
-    def _energy(self) -> StrainEnergy:
-        return StrainEnergy(self.terms, self.law)
+    def _stressed(self, displacements: NDArray[np.float64]) -> list[Stressed]:
+        return [term.stressed(displacements.T, self.law) for term in self.terms]
 
     def tangent(self, displacements: NDArray[np.float64]) -> csr_array:
         """Tangent stiffness (3N, 3N) at displacements (N, 3), newton per metre at unit modulus.

@@ -84,7 +84,8 @@ class Balance:
         """As firm as a node at rest, for each on its own, (m, 3, 3)."""
         solid = self.spread.solid
         own = solid.solid.pattern.rows == solid.solid.pattern.columns
-        usual = float(np.median(np.einsum("mii->mi", solid.rest_blocks[own])))
+        at_rest = solid.solid.tangent_blocks(np.zeros((solid.node_count, 3)))
+        usual = float(np.median(np.einsum("mii->mi", at_rest[own])))
         firm: Array = own[:, None, None] * (usual * np.eye(3))
         return firm
 

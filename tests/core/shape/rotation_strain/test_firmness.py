@@ -92,14 +92,14 @@ def test_small_presses_are_linear_and_deep_ones_of_rubber_firmer(block):
     energies = []
     for size in (1e-4, 0.05, 0.25):
         load = spread(block, size)
-        energies.append((block.under([load]).deepest, energy_of(block, load)))
+        energies.append((block.pressed([load]).firmness.deepest, energy_of(block, load)))
     assert energies[0][0] == pytest.approx(1.0, abs=5e-3)
     assert 1.0 < energies[1][0] < energies[2][0] < 2.0
     assert energies[1][1] < energies[2][1]
 
 
 def test_what_is_known_of_a_deep_press_tells_of_those_on_the_way(block):
-    deep, half = (block.under([spread(block, size)]) for size in (0.24, 0.12))
+    deep, half = (block.pressed([spread(block, size)]).firmness for size in (0.24, 0.12))
     assert deep.at(half.reach) == pytest.approx(half.deepest, abs=0.01)
     assert deep.at(0.0) == 1.0
     assert deep.at(math.inf) == deep.deepest
@@ -111,19 +111,19 @@ def test_several_fingers_have_one_firmness(block):
         FingerLoad(load.nodes[side], load.forces[side])
         for side in (slice(None, None, 2), slice(1, None, 2))
     ]
-    whole, together = block.under([load]), block.under(parts)
+    whole, together = block.pressed([load]).firmness, block.pressed(parts).firmness
     assert together.deepest == pytest.approx(whole.deepest, abs=0.02)
     assert together.reach == pytest.approx(whole.reach, rel=1e-6)
 
 
 def test_without_a_load_the_body_is_linear(block):
     none = FingerLoad(block.solid.free[:1], np.zeros((1, 3)))
-    assert block.under([]) == block.under([none]) == Firmness()
+    assert block.pressed([]).firmness == block.pressed([none]).firmness == Firmness()
 
 
 def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
     monkeypatch.setattr("palpate.core.shape.rotation_strain.firmness.MOST_STEPS", 0)
-    found = block.under([spread(block, 0.3)])
+    found = block.pressed([spread(block, 0.3)]).firmness
     assert not found.is_whole
     assert found.deepest == 1.0
 
@@ -161,7 +161,7 @@ def test_a_wall_presses_a_block_that_would_turn_aside_under_its_forces(block):
     moved = np.stack([block.solid.linear(one)[top, 2] for one in down])
     forces = np.zeros((len(top), 3))
     forces[:, 2] = np.linalg.solve(moved, np.full(len(top), -0.4))
-    firmness = block.under([FingerLoad(block.solid.free[top], forces)])
+    firmness = block.pressed([FingerLoad(block.solid.free[top], forces)]).firmness
     assert firmness.is_whole
     # Neo-Hookean rubber under a smooth wall on a base that holds it.
     assert 1.45 < firmness.deepest < 1.75

@@ -189,14 +189,14 @@ def test_a_light_touch_of_few_triangles_is_as_firm_as_on_the_linear_body(firm, a
     place = np.array([0.025 + aside[0], 0.025 + aside[1], 0.05])
     for depth in (0.0003, 0.0006):
         touch = press_tool(firm.body, sphere(0.008), Pose.at(place + (0.008 - depth) * UP))
-        assert firm.under(loads_of([touch])).deepest == pytest.approx(1.0, abs=0.02)
+        assert firm.pressed(loads_of([touch])).firmness.deepest == pytest.approx(1.0, abs=0.02)
 
 
 def test_light_touches_of_two_tools_are_as_firm_together(firm):
     """Though the places of one tell more of its force than those of the other."""
     starts = [Pose.at([x, y, 0.0585]) for x, y in ((0.0128, 0.0131), (0.0407, 0.0395))]
     touches = press_tools(firm.body, sphere(0.008), starts, [-0.0013 * UP] * 2)
-    assert firm.under(loads_of(touches)).deepest == pytest.approx(1.0, abs=0.02)
+    assert firm.pressed(loads_of(touches)).firmness.deepest == pytest.approx(1.0, abs=0.02)
 
 
 def test_among_coarse_triangles_a_dent_is_deepest_where_it_is_pressed():

@@ -98,7 +98,7 @@ def test_a_coarse_mesh_presses_back_as_one_twice_as_fine(coarse, fine, depth):
     for firm in (coarse, fine):
         loads = pressed(firm, depth)
         linear = float(np.linalg.norm(loads[0].forces.sum(axis=0)))
-        forces.append(linear * firm.under(loads).deepest)
+        forces.append(linear * firm.pressed(loads).firmness.deepest)
     assert forces[0] == pytest.approx(forces[1], rel=0.06)
 
 
@@ -114,6 +114,7 @@ def test_a_touch_that_places_miss_is_not_told_by_them():
 def test_what_is_felt_grows_without_a_jump(coarse):
     """From a touch that is hardly wider than a triangle to one that is."""
     shares = [
-        coarse.under(pressed(coarse, depth)).deepest for depth in np.linspace(0.001, 0.01, 28)
+        coarse.pressed(pressed(coarse, depth)).firmness.deepest
+        for depth in np.linspace(0.001, 0.01, 28)
     ]
     assert np.abs(np.diff(shares)).max() < 0.04
