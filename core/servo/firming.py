@@ -15,14 +15,15 @@ from ..body.soft_body import SoftBody
 from ..contact.tool.pose import Pose
 from ..contact.tool.tools import Tool
 from ..rest.support import Floor, Support, as_tool
-from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike, totals
+from ..shape.rotation_strain.finger_load import FingerLoad, Setting, alike
 from ..shape.rotation_strain.firm_places import FirmPlaces
 from ..shape.rotation_strain.pressed import Firmness
 from ..shape.shapes import Shape, pressed_by
 
-# It is looked for a little deeper than fingers are that move, and as much deeper as they have gone
-# since the last look, for they may go on; times the depth, at least and at most.
-AHEAD, FARTHEST_AHEAD = 1.2, 1.6
+# It is looked for deeper than fingers are that move: as deep as they will be in so many times as
+# long as the last look took, the first one so many seconds; times the depth, at least and at most.
+LOOKS_AHEAD, TAKES = 1.2, 0.1
+AHEAD, FARTHEST_AHEAD = 1.2, 30.0
 # Fingers whose forces changed by less than this share press as they did; by less than the other
 # between two calls, they are at rest.
 SAME, AT_REST = 0.03, 1e-6
@@ -75,6 +76,10 @@ class Firming:
     _looked: _Look = field(default_factory=_Look)
     _places: FirmPlaces = field(default_factory=FirmPlaces)
     _before: tuple[FingerLoad, ...] = ()
+    _seen: Snapshot | None = None
+    # When the look began, and how long the last one of fingers that move took, s.
+    _since: float = 0.0
+    _took: float = TAKES
 
     @property
     def looks(self) -> bool:
@@ -91,6 +96,7 @@ class Firming:
         """
         loads = self.pressing(snapshot)
         rests, self._before = alike(loads, self._before, AT_REST), loads
+        deeper, self._seen = _deeper(self._seen, snapshot, young_modulus), snapshot
         is_other, self._shape = shape is not self._shape, shape
         if is_other:
             self._places.forget()
@@ -99,32 +105,36 @@ class Firming:
             self._tell(LINEAR)
         elif self._told == LINEAR:
             self._tell(self._places.at(loads))
-        if self._finding is not None:
-            if not self._finding.done():
-                return
-            found, self._finding = self._finding.result(), None
-            # What another shape said, or of another touch, is looked for anew.
-            if self._looked.loads:
-                self._places.remember(self._looked.loads, found)
-                self._tell(self._places.at(self._looked.loads))
-        ahead = 1.0 if rests else self._ahead(loads)
+        if self._is_looking(snapshot.time):
+            return
+        further = 1.0 + deeper * LOOKS_AHEAD * self._took
+        ahead = 1.0 if rests else min(max(further, AHEAD), FARTHEST_AHEAD)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
             return
         if not rests:
             known = self._places.at(loads)
-            if known.reach > ahead * ahead * snapshot.held:
+            if known.reach > AHEAD * AHEAD * snapshot.held:
                 self._tell(known)
                 return
-        self._looked = _Look(loads, ahead)
+        self._looked, self._since = _Look(loads, ahead), snapshot.time
         self._finding = self._worker.submit(
             _firmness, shape, self._looked, young_modulus, snapshot.held
         )
 
-    def _ahead(self, loads: Sequence[FingerLoad]) -> float:
-        """How many times as deep fingers may be by the end of a look that go on as until now."""
-        before = _pushed(self._looked.loads)
-        grown = 1.0 - before / _pushed(loads) if loads and before > 0.0 else 0.0
-        return min(max(1.0 + grown, AHEAD), FARTHEST_AHEAD)
+    def _is_looking(self, now: float) -> bool:
+        """Whether a look goes on; what was found by one that has ended is told."""
+        if self._finding is None:
+            return False
+        if not self._finding.done():
+            return True
+        found, self._finding = self._finding.result(), None
+        # What another shape said, or of another touch, is looked for anew.
+        if self._looked.loads:
+            self._places.remember(self._looked.loads, found)
+            self._tell(self._places.at(self._looked.loads))
+            if self._looked.ahead > 1.0:
+                self._took = now - self._since
+        return False
 
     def pressing(self, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
         """Loads of the fingers that touch, and of what bears the body, as a linear one would have
@@ -208,9 +218,16 @@ class Firming:
             self.servo.set_firmness(told.energies, told.shares)
 
 
-def _pushed(loads: Sequence[FingerLoad]) -> float:
-    """How strongly all of them press, N."""
-    return float(np.linalg.norm(totals(loads), axis=1).sum())
+def _deeper(before: Snapshot | None, now: Snapshot, young_modulus: float) -> float:
+    """By what share of their depth fingers go deeper in a second: by half the share of the energy
+    that a linear body holds which is the work that they do on it.
+    """
+    if before is None or not now.time > before.time or not now.held > 0.0:
+        return 0.0
+    fingers = zip(now.fingers, before.fingers, strict=False)
+    work = -sum(float(one.contact_force @ (one.probe - was.probe)) for one, was in fingers)
+    linear = work / (now.firmness * young_modulus * (now.time - before.time))
+    return 0.5 * linear / now.held
 
 
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:

@@ -10,7 +10,7 @@ from .finger_load import FingerLoad, are_near
 from .pressed import Firmness, through
 
 # So many are remembered, the last ones.
-MOST = 16
+MOST = 48
 # Of energies of a place that differ by a smaller factor the last found is kept; so many at most.
 APART, MOST_ENERGIES = 1.3, 24
 

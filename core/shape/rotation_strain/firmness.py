@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
-from .beside.beside_tools import beside_tools, between_tools
+from .beside.beside_tools import Beside, beside_tools, between_tools
 from .finger_load import FingerLoad, let_go, on_free_nodes, totals
 from .linear_press import LinearPress
 from .pressed import LINEAR, Found, Pressed, blended, through
@@ -28,9 +28,9 @@ from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
 
-# Shares of the depth to which the body is led one after the other, and the one beside the last at
-# which firmness is told.
-DEPTHS, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), 0.5, 0.75
+# Shares of the depth to which the body is led one after the other, on the way of a press that goes
+# on, too; and the one beside the last at which firmness is told.
+DEPTHS, ON_WAY, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), (0.5, 1.0), 0.5, 0.75
 # Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
 CLOSE, MOST_STEPS = 0.001, 1000
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
@@ -49,20 +49,27 @@ class FirmBody:
         self, loads: Sequence[FingerLoad], ahead: float = 1.0, before: Found | None = None
     ) -> Pressed:
         """A press whose linear forces at unit modulus are ``loads``: firmness to its depth, and the
-        body at rest there; ``ahead``, where it is that much deeper.
+        body at rest there.
 
         Where the body finds no rest under forces that would be right, to the depth to which it did:
-        without any the linear one. ``before``: of a press by the same tools at the same places.
+        without any the linear one.
+
+        Parameters
+        ----------
+        ahead : where it is that much deeper; beyond 1 of one that goes on, for whom there is little
+            time: from ``before``, and at few depths.
+        before : of a press by the same tools at the same places.
         """
         energy = self._energy(loads) if loads else 0.0
         if not energy > 0.0:
             return LINEAR
         if self.solid.motions is not None:
             return replace(self._lying(loads, ahead, before or Found()), energy=energy)
-        beside, trust = self._beside(loads, ahead)
-        if trust == 1.0:
-            return replace(beside, energy=energy)
-        led = self._led([one.times(ahead) for one in loads])
+        if ahead > 1.0:
+            near = None if before is None else before.taken_to(ahead * ahead * energy)
+            return replace(self._on_way(loads, ahead, near), energy=energy)
+        beside, trust = self._beside(loads)
+        led = self._led(loads) if trust < 1.0 else LINEAR
         return replace(blended(led, beside, trust) if trust else led, energy=energy)
 
     def on_surface(
@@ -78,23 +85,33 @@ class FirmBody:
         forces = on_free_nodes(self.solid, loads)
         return 0.5 * float((forces * self.solid.linear(forces)).sum())
 
-    def _beside(self, loads: Sequence[FingerLoad], depth: float) -> tuple[Pressed, float]:
+    def _on_way(self, loads: Sequence[FingerLoad], ahead: float, near: Found | None) -> Pressed:
+        """Of a press that goes on and does not wait: at few depths, from one that is near."""
+        start = None if near is None or near.kept is None else near.kept.linear
+        found = beside_tools(self.body, self.solid, self.relaxation, loads, ahead, start)
+        if found is not None and found.trust == 1.0:
+            return _told_beside([found])
+        deeper = [one.times(ahead) for one in loads]
+        led = self._led(deeper, near, ON_WAY, by_nodes=False)
+        if found is None:
+            return led
+        both = replace(led.found or Found(), kept=found.kept)
+        return replace(blended(led, _told_beside([found]), found.trust), found=both)
+
+    def _beside(self, loads: Sequence[FingerLoad]) -> tuple[Pressed, float]:
         """By tools that slide: of their contact with the body itself, and how far that is trusted;
         not at all where there is none.
         """
         at = partial(beside_tools, self.body, self.solid, self.relaxation, loads)
-        half = at(HALF * depth)
-        whole = at(depth, None if half is None else half.kept.linear / HALF)
+        half = at(HALF)
+        whole = at(1.0, None if half is None else half.kept.linear / HALF)
         if whole is None and half is not None:
-            further = at(BETWEEN * depth, half.kept.linear * (BETWEEN / HALF))
-            whole = further and at(depth, further.kept.linear / BETWEEN)
+            further = at(BETWEEN, half.kept.linear * (BETWEEN / HALF))
+            whole = further and at(1.0, further.kept.linear / BETWEEN)
         if whole is None:
             return LINEAR, 0.0
-        told = [(whole.energy, whole.share)]
-        if half is not None and half.energy < whole.energy:
-            told.insert(0, (half.energy, half.share))
-        found = Pressed(through(told), whole.energy, whole.kept.displacements)
-        return found, whole.trust
+        is_known = half is not None and half.energy < whole.energy
+        return _told_beside([half, whole] if half and is_known else [whole]), whole.trust
 
     def _lying(self, loads: Sequence[FingerLoad], ahead: float, before: Found) -> Pressed:
         """A body that nothing holds, between all that touches it: by its contact with them where
@@ -124,16 +141,22 @@ class FirmBody:
         return replace(blended(led, beside, kept_out.trust), found=found)
 
     def _led(
-        self, loads: Sequence[FingerLoad], before: Found | None = None, *, by_nodes: bool = True
+        self,
+        loads: Sequence[FingerLoad],
+        before: Found | None = None,
+        depths: Sequence[float] = DEPTHS,
+        *,
+        by_nodes: bool = True,
     ) -> Pressed:
         """By forces that lead it to where a linear body would be; ``by_nodes``, where they do not
         in proportion, each by itself.
         """
         whole = LinearPress.of(self.solid, loads)
         goes_on = self._led_on(whole, before) if before is not None else None
-        known, rest = goes_on or self._led_by(whole)
+        known, rest = goes_on or self._led_by(whole, depths)
         if by_nodes and max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
-            others, other_rest = self._led_by(LinearPress.of(self.solid, loads, by_nodes=True))
+            each = LinearPress.of(self.solid, loads, by_nodes=True)
+            others, other_rest = self._led_by(each, depths)
             if max(others) > max(known):
                 return self._told(whole, others, other_rest)
         told = self._told(whole, known, rest)
@@ -159,15 +182,18 @@ class FirmBody:
         rest = self.relaxation.led(press.patterns, press.ways, CLOSE, MOST_STEPS, before.rest)
         if rest.left > ENOUGH or press.swings(rest.displacements, 1.0):
             return None
-        share = float(rest.forces @ press.ways) / press.work
-        half = before.curve.at(HALF * HALF * press.energy)
-        return {HALF: half, DEPTHS[-1]: share}, rest
+        known = {DEPTHS[-1]: float(rest.forces @ press.ways) / press.work}
+        if self.solid.motions is not None:
+            known[HALF] = before.curve.at(HALF * HALF * press.energy)
+        return known, rest
 
-    def _led_by(self, press: LinearPress) -> tuple[dict[float, float], Rest | None]:
+    def _led_by(
+        self, press: LinearPress, depths: Sequence[float]
+    ) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and that at the deepest."""
         known, rest = {0.0: 1.0}, None
         before = 0.0
-        for depth in DEPTHS:
+        for depth in depths:
             ways = depth * press.ways
             further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
             share = float(further.forces @ press.ways) / (depth * press.work)
@@ -178,3 +204,10 @@ class FirmBody:
             rest, before = further, depth * share
             known[depth] = share
         return known, rest
+
+
+def _told_beside(found: Sequence[Beside]) -> Pressed:
+    """What a body beside tools tells of a press, at depths of which the last is its own."""
+    curve, whole = through([(one.energy, one.share) for one in found]), found[-1]
+    known = Found(whole.kept, None, curve)
+    return Pressed(curve, whole.energy, whole.kept.displacements, known)

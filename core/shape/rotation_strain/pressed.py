@@ -14,6 +14,8 @@ from .relaxation import Rest
 
 Array = NDArray[np.float64]
 
+# Of presses that are at most so many times as deep, or as shallow, one goes on from the other.
+NEAR = 4.0
 # Bounds of what is believed.
 LEAST, MOST = 0.1, 30.0
 # Depths over that of the reach: from where to there the slope is told, and how far it is followed.
@@ -79,7 +81,7 @@ class Firmness:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What was found of a press of a body that nothing holds; one that is near goes on from it.
+    """What was found of a press; one that is near goes on from it.
 
     Attributes
     ----------
@@ -91,6 +93,15 @@ class Found:
     kept: Kept | None = None
     rest: Rest | None = None
     curve: Firmness | None = None
+
+    def taken_to(self, energy: float) -> Found | None:
+        """In proportion to where a press holds ``energy``, J/Pa; None where that is not near."""
+        reach = 0.0 if self.curve is None else self.curve.reach
+        if not reach / NEAR**2 <= energy <= reach * NEAR**2:
+            return None
+        deeper = math.sqrt(energy / reach)
+        kept = self.kept and replace(self.kept, linear=deeper * self.kept.linear)
+        return replace(self, kept=kept)
 
 
 @dataclass(frozen=True, eq=False)
