@@ -21,9 +21,10 @@ from ..shape.rotation_strain.pressed import Firmness
 from ..shape.shapes import Shape, pressed_by
 
 # It is looked for deeper than fingers are that move: as deep as they will be in so many times as
-# long as the last look took, the first one so many seconds; times the depth, at least and at most.
+# long as the last look took, the first one so many seconds; times the depth, at least and at most,
+# and at most of a body that nobody holds, whose weight would be as much larger.
 LOOKS_AHEAD, TAKES = 1.2, 0.1
-AHEAD, FARTHEST_AHEAD = 1.2, 30.0
+AHEAD, FARTHEST_AHEAD, LYING_AHEAD = 1.2, 30.0, 1.6
 # Fingers whose forces changed by less than this share press as they did; by less than the other
 # between two calls, they are at rest.
 SAME, AT_REST = 0.03, 1e-6
@@ -108,7 +109,8 @@ class Firming:
         if self._is_looking(snapshot.time):
             return
         further = 1.0 + deeper * LOOKS_AHEAD * self._took
-        ahead = 1.0 if rests else min(max(further, AHEAD), FARTHEST_AHEAD)
+        farthest = LYING_AHEAD if self.body.is_free else FARTHEST_AHEAD
+        ahead = 1.0 if rests else min(max(further, AHEAD), farthest)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
             return
         if not rests:

@@ -1,10 +1,12 @@
 """Touches about as wide as a triangle: what places tell of them, and what the near field adds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bodies.baked_body import baked_body
 
-from palpate.core.contact.single_press import press_tool
+from palpate.core.contact.single_press import press_tool, touch_nearest
 from palpate.core.contact.tool.pose import Pose
 from palpate.core.contact.tool.tools import sphere
 from palpate.core.mesh.paper_cube import paper_cube
@@ -23,8 +25,8 @@ UP = np.array([0.0, 0.0, 1.0])
 BALL = sphere(0.012)
 
 
-def firm_cube(cells):
-    body = baked_body(*paper_cube(EDGE, cells), 0.45, 1.0, "smoothed")
+def firm_cube(cells, law="rubber"):
+    body = replace(baked_body(*paper_cube(EDGE, cells), 0.45, 1.0, "smoothed"), law=law)
     solid = FreeSolid.of(body)
     return FirmBody(body, solid, relaxation(solid))
 
@@ -118,3 +120,31 @@ def test_what_is_felt_grows_without_a_jump(coarse):
         for depth in np.linspace(0.001, 0.01, 28)
     ]
     assert np.abs(np.diff(shares)).max() < 0.04
+
+
+# Times as deep as a press is the one that is looked for on the way, and the depths of presses.
+AHEAD, WAY = 1.25, np.array([0.0004, 0.0008, 0.0016, 0.0024, 0.0036, 0.0052, 0.0072])
+
+
+def with_a_point(firm, depth):
+    return loads_of([touch_nearest(firm.body, PLACE, -depth * UP)])
+
+
+@pytest.mark.parametrize("press", [with_a_point, pressed], ids=["point", "ball"])
+@pytest.mark.parametrize("law", ["rubber", "foam"])
+def test_on_the_way_in_it_is_as_firm_as_a_press_that_is_looked_at_by_itself(press, law):
+    firm = firm_cube(6, law)
+    before = None
+    for depth in WAY:
+        found = firm.pressed(press(firm, depth), AHEAD, before)
+        alone = firm.pressed(press(firm, AHEAD * depth))
+        assert found.firmness.deepest == pytest.approx(alone.firmness.deepest, rel=0.02)
+        before = found.found
+
+
+def test_a_press_much_deeper_than_the_last_does_not_go_on_from_there(coarse):
+    before = coarse.pressed(pressed(coarse, 0.0002), AHEAD).found
+    assert before.taken_to(before.curve.reach) is not None
+    deep = pressed(coarse, 0.006)
+    anew, found = (coarse.pressed(deep, AHEAD, one) for one in (None, before))
+    assert found.firmness == anew.firmness
