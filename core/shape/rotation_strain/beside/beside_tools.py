@@ -23,7 +23,7 @@ from ..finger_load import FingerLoad, Setting, on_free_nodes, totals
 from ..lying import Loose
 from ..relaxation import Relaxation
 from .kept_out import Kept, carrying, kept_out
-from .reached import Reached, places_of
+from .reached import Reached, places_of, usual_edge
 
 Array = NDArray[np.float64]
 
@@ -35,6 +35,9 @@ WIDE, WIDE_LYING = (12.0, 22.0), (8.0, 16.0)
 # So much of the linear contact's force comes back from places that miss a touch, from others so
 # much.
 MISSED, RESOLVED = 0.6, 0.8
+# Where a tool enters triangles between their places by so many edges more than in the linear
+# contact, it goes through them little by little.
+ENTERS = (0.02, 0.06)
 # Of a linear body's force: with less a body has gone past its tool, or the tool through it.
 SOFTEST = 0.1
 # Places at most that press for each node that the linear contact presses.
@@ -92,6 +95,12 @@ def beside_tools(
         kept = kept_out(solid, relaxation, where, linear, moved, begin)
         return _beside(along, told, kept, energy, trust)
 
+    def on(where: Reached, begin: Array) -> Beside | None:
+        found = at(where, begin, resolved, told)
+        enters = reached.within(found.kept.displacements) - reached.within(moved)
+        through = _on_way(enters / usual_edge(body), *ENTERS)
+        return _trusted(replace(found, trust=found.trust * (1.0 - through)))
+
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
     if not narrow:
         return _trusted(at(reached, begin, 1.0, along))
@@ -104,11 +113,9 @@ def beside_tools(
         return None
     # What these places miss of a linear body they miss of this one.
     told = along + narrow * (comes_back - along)
-    found = _trusted(at(bed, begin, resolved, told))
-    if found is None:
-        return None
+    found = on(bed, begin)
     # What is beneath is of the same law: as firm as the body was found to be.
-    return _trusted(at(bed.on_springs(found.share), found.kept.linear, resolved, told))
+    return found and on(bed.on_springs(found.share), found.kept.linear)
 
 
 def _trusted(found: Beside) -> Beside | None:

@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 
 # Places of a triangle, each for a third of its area.
 PLACES = np.array([[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0
+# Points of a triangle, by its places: at nodes, on quarters of edges, and between.
+QUARTERS = np.array([[i, j, 4 - i - j] for i in range(5) for j in range(5 - i)]) / 4.0
+BETWEEN = QUARTERS @ np.linalg.inv(PLACES)
 # Pressure over depth where a place is within a tool, times the mean edge, per pascal.
 FIRMNESS = 30.0
 # What lies within so many edges of a tool at rest may meet it.
@@ -145,6 +148,18 @@ class Reached:
             distance[own], normals = by.tool.distance(by.pose.to_tool(there[own]))
             out[own] = normals @ by.pose.rotation.T
         return distance, out
+
+    def within(self, displacements: Array) -> float:
+        """How far the triangles of the places are within tools at most, metres."""
+        there, deepest = self.moved(displacements), 0.0
+        for one, (by, near) in enumerate(zip(self.tools, self.near, strict=True)):
+            first = np.flatnonzero(near[2:] == near[:-2] + 2)
+            first = first[near[first] % 3 == 0]
+            places = there[self.which == one][first[:, None] + np.arange(3)]
+            between = np.einsum("qa,tai->tqi", BETWEEN, places).reshape(-1, 3)
+            distance, _ = by.tool.distance(by.pose.to_tool(between))
+            deepest = max(deepest, -float(distance.min(initial=0.0)))
+        return deepest
 
     def pushes(self, linear: Array) -> Array:
         """Forces (p, 3), N at 1 Pa, with which tools would press a linear body at these places.

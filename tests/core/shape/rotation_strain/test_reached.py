@@ -113,6 +113,20 @@ def test_a_touch_that_places_miss_is_not_told_by_them():
     assert beside_tools(firm.body, firm.solid, firm.relaxation, loads, 1.0) is None
 
 
+@pytest.mark.parametrize("place", [PLACE, np.array([0.0275, 0.03, EDGE])], ids=["node", "edge"])
+def test_a_ball_no_wider_than_a_triangle_does_not_go_through_it(place):
+    """The deeper the firmer; on its places alone it is at last a third as firm."""
+    firm, ball = firm_cube(4), sphere(0.008)
+    felt = []
+    for depth in ball.radius * np.linspace(0.3, 1.3, 11):
+        loads = pressed(firm, depth, ball, place)
+        linear = np.linalg.norm(loads[0].forces.sum(axis=0))
+        felt.append((linear, linear * firm.pressed(loads).firmness.deepest))
+    linear, forces = np.array(felt).T
+    assert np.diff(forces).min() > 0.5 * np.diff(linear).min() > 0.0
+    assert (forces / linear).min() > 0.92
+
+
 def test_what_is_felt_grows_without_a_jump(coarse):
     """From a touch that is hardly wider than a triangle to one that is."""
     shares = [
