@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from .meeting import settled
-from .rotation_strain.finger_load import FingerLoad, alike
+from .rotation_strain.finger_load import FingerLoad, alike, joined
 from .rotation_strain.pressed import Firmness
 from .shapes import Shape, pressed_by
 
@@ -107,15 +107,14 @@ class FoundBehind:
         self._worker.shutdown(wait=False, cancel_futures=True)
 
     def _linear(self, loads: Loads) -> tuple[Array, float]:
-        nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(one.nodes for one in loads)])
-        forces = np.concatenate([np.zeros((0, 3)), *(one.forces for one in loads)])
+        nodes, forces = joined(loads)
         moved = self.body.deform(nodes, forces, self.young_modulus)
         places = self.body.free_index(nodes)
         free = places >= 0
         return moved, 0.5 * float((forces[free] * moved[places[free]]).sum())
 
     def _find(self, loads: Loads) -> _Found:
-        self.shape.wait_for(np.unique(np.concatenate([one.nodes for one in loads])))
+        self.shape.wait_for(np.unique(joined(loads)[0]))
         linear, energy = self._linear(loads)
         pressed = pressed_by(self.shape, loads, self.young_modulus)
         moved = pressed.displacements

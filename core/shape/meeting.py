@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
-from .rotation_strain.finger_load import FingerLoad, let_go
+from .rotation_strain.finger_load import FingerLoad, joined, let_go
 from .shapes import LinearShape, Shape, pressed_by
 
 Array = NDArray[np.float64]
@@ -88,12 +88,12 @@ class Meeting:
     def step(self, fingers: Sequence[FingerLoad], young_modulus: float) -> Met:
         """The shape under these loads, one step nearer to the fingers than the last one."""
         loads = [FingerLoad(load.nodes, load.forces / young_modulus) for load in fingers]
-        linear = self.body.deform(*_joined(loads), 1.0)
+        linear = self.body.deform(*joined(loads), 1.0)
         if isinstance(self.shape, LinearShape) or not loads:
             return Met(linear, linear, 0.0)
         if self.body.is_free:
             # As a whole it is where what touches it is.
-            moved = self.shape.displacements(*_joined(loads), 1.0, let_go(fingers))
+            moved = self.shape.displacements(*joined(loads), 1.0, let_go(fingers))
             return Met(moved, linear, 0.0)
         wanted = self._places(loads, linear)
         self._recognise(loads, wanted)
@@ -158,7 +158,7 @@ class Meeting:
             )
             for load, now in zip(loads, self._loads, strict=True)
         ]
-        return self.shape.displacements(*_joined(changed), 1.0)
+        return self.shape.displacements(*joined(changed), 1.0)
 
     def _places(self, loads: Sequence[FingerLoad], displacements: Array) -> Array:
         """Displacement of the middle of each load, (m, 3)."""
@@ -217,7 +217,7 @@ def settled(body: SoftBody, shape: Shape, loads: Sequence[FingerLoad], young_mod
     PalpateError
         It cannot be computed.
     """
-    nodes, forces = _joined(loads)
+    nodes, forces = joined(loads)
     shape.wait_for(np.unique(nodes))
     rest = pressed_by(shape, loads, young_modulus).displacements
     if rest is not None:
@@ -228,12 +228,3 @@ def settled(body: SoftBody, shape: Shape, loads: Sequence[FingerLoad], young_mod
 def _longest(vectors: Array) -> float:
     """Length of the longest of vectors (m, 3); 0 without any."""
     return float(np.linalg.norm(vectors, axis=1).max(initial=0.0))
-
-
-def _joined(loads: Sequence[FingerLoad]) -> tuple[NDArray[np.int64], Array]:
-    nodes = [load.nodes for load in loads]
-    forces = [load.forces for load in loads]
-    return (
-        np.concatenate([np.zeros(0, dtype=np.int64), *nodes]),
-        np.concatenate([np.zeros((0, 3)), *forces]),
-    )

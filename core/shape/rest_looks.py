@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..body.soft_body import SoftBody
 from ..rest.rest import BodyTouch, Rest
-from .rotation_strain.finger_load import FingerLoad, Footing, Setting, alike
+from .rotation_strain.finger_load import FingerLoad, Footing, Setting, alike, joined
 from .shapes import LinearShape, Shape, pressed_by
 
 Array = NDArray[np.float64]
@@ -87,10 +87,8 @@ def shown(rest: Rest, shape: Shape, times: float) -> Rest:
     linear = rest.displacements()
     if np.abs(linear).max() < SEEN * float(np.ptp(rest.body.mesh.nodes, axis=0).max()):
         return rest
-    nodes = np.concatenate([one.nodes for one in loads])
-    forces = np.concatenate([one.forces for one in loads])
     modulus = rest.young_modulus / times
-    return replace(rest, deformed=shape.displacements(nodes, forces, modulus, rest.let_go))
+    return replace(rest, deformed=shape.displacements(*joined(loads), modulus, rest.let_go))
 
 
 def loads_of(rest: Rest, times: float) -> list[FingerLoad]:

@@ -79,10 +79,15 @@ class FingerLoad:
         return shares
 
 
+def joined(loads: Sequence[FingerLoad]) -> tuple[NDArray[np.int64], Array]:
+    """The nodes (k,) of all of them, and the forces (k, 3) on these."""
+    nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(load.nodes for load in loads)])
+    return nodes, np.concatenate([np.zeros((0, 3)), *(load.forces for load in loads)])
+
+
 def on_free_nodes(solid: FreeSolid, loads: Sequence[FingerLoad]) -> Array:
     """All of the loads as forces (f, 3) on the free nodes."""
-    nodes = np.concatenate([load.nodes for load in loads])
-    return solid.on_free_nodes(nodes, np.concatenate([load.forces for load in loads]))
+    return solid.on_free_nodes(*joined(loads))
 
 
 def totals(loads: Sequence[FingerLoad]) -> Array:

@@ -16,28 +16,23 @@ APART, MOST_ENERGIES = 1.3, 24
 
 
 @dataclass(frozen=True, eq=False)
-class _Known:
-    loads: tuple[FingerLoad, ...]
-    firmness: Firmness
-
-
-@dataclass(frozen=True, eq=False)
 class FirmPlaces:
     """Presses of one body with what was found of them."""
 
-    _known: deque[_Known] = field(default_factory=lambda: deque(maxlen=MOST))
+    _known: deque[tuple[tuple[FingerLoad, ...], Firmness]] = field(
+        default_factory=lambda: deque(maxlen=MOST)
+    )
 
     def remember(self, loads: tuple[FingerLoad, ...], firmness: Firmness) -> None:
         """What was found of a press."""
-        self._known.append(_Known(loads, firmness))
+        self._known.append((loads, firmness))
 
     def at(self, loads: Sequence[FingerLoad]) -> Firmness:
         """All that is known of presses there by the same fingers; where there is none, linear."""
         points: list[tuple[float, float]] = []
-        for known in reversed(self._known):
-            if not are_near(known.loads, loads):
+        for known, found in reversed(self._known):
+            if not are_near(known, loads):
                 continue
-            found = known.firmness
             points += [
                 (energy, share)
                 for energy, share in zip(found.energies, found.shares, strict=True)

@@ -72,15 +72,6 @@ class FirmBody:
         led = self._led(loads) if trust < 1.0 else LINEAR
         return replace(blended(led, beside, trust) if trust else led, energy=energy)
 
-    def on_surface(
-        self, loads: Sequence[FingerLoad], ahead: float = 1.0, before: Found | None = None
-    ) -> Pressed:
-        """The same with the displacements of the free surface nodes alone."""
-        found = self.pressed(loads, ahead, before)
-        if found.displacements is None:
-            return found
-        return replace(found, displacements=found.displacements[self.solid.surface])
-
     def _energy(self, loads: Sequence[FingerLoad]) -> float:
         forces = on_free_nodes(self.solid, loads)
         return 0.5 * float((forces * self.solid.linear(forces)).sum())
@@ -110,8 +101,8 @@ class FirmBody:
             whole = further and at(1.0, further.kept.linear / BETWEEN)
         if whole is None:
             return LINEAR, 0.0
-        is_known = half is not None and half.energy < whole.energy
-        return _told_beside([half, whole] if half and is_known else [whole]), whole.trust
+        found = [half, whole] if half and half.energy < whole.energy else [whole]
+        return _told_beside(found), whole.trust
 
     def _lying(self, loads: Sequence[FingerLoad], ahead: float, before: Found) -> Pressed:
         """A body that nothing holds, between all that touches it: by its contact with them where

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Lock
 from typing import Protocol
 
@@ -128,8 +128,12 @@ class RotationStrainShape:
             if known is None or known[1] != ahead or not alike(known[0], unit):
                 near, found = self._found.get(len(unit), ((), None))
                 before = found if are_near(near, unit) else None
-                self._last = known = unit, ahead, made.firm.on_surface(unit, ahead, before)
-                self._found[len(unit)] = unit, known[2].found
+                pressed = made.firm.pressed(unit, ahead, before)
+                if pressed.displacements is not None:
+                    seen = pressed.displacements[made.firm.solid.surface]
+                    pressed = replace(pressed, displacements=seen)
+                self._last = known = unit, ahead, pressed
+                self._found[len(unit)] = unit, pressed.found
             return known[2]
 
     def known(self, loads: Sequence[FingerLoad], young_modulus: float) -> Pressed:

@@ -68,7 +68,10 @@ class FreeSolid:
         free = np.setdiff1d(np.arange(len(mesh.nodes)), body.fixed)
         terms = tuple(
             StrainTerm(
-                _columns(term.gradients, free), term.volumes, term.first_lame, term.shear_modulus
+                csr_array(term.gradients[:, free]),
+                term.volumes,
+                term.first_lame,
+                term.shear_modulus,
             )
             for term in whole.terms
         )
@@ -88,14 +91,6 @@ class FreeSolid:
     def forces(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
         """Forces (f, 3) that hold the free nodes at displacements (f, 3), newton."""
         return self.solid.forces(displacements)
-
-    def tangent(self, displacements: NDArray[np.float64]) -> csr_array:
-        """Tangent stiffness (3f, 3f) at displacements (f, 3), newton per metre."""
-        return self.solid.tangent(displacements)
-
-    def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Det F of every domain; see :meth:`.solid.Solid.volume_ratios`."""
-        return self.solid.volume_ratios(displacements)
 
     def linear(self, nodal_forces: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacements (f, 3) that linear elasticity gives for forces (f, 3), K^-1 F."""
@@ -161,8 +156,3 @@ def linear_under(
     if motions is None:
         return factor.solve(forces.ravel()).reshape(-1, 3)
     return motions.still(factor.solve(motions.balanced(forces).ravel()).reshape(-1, 3))
-
-
-def _columns(gradients: csr_array, nodes: NDArray[np.int64]) -> csr_array:
-    chosen: csr_array = gradients[:, nodes]
-    return chosen

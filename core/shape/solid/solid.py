@@ -11,7 +11,6 @@ University Press, 2nd edition, 2008; the tangent in section 9.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -90,10 +89,6 @@ class Solid:
         )
         return TangentPattern.of(rows, columns, self.node_count)
 
-    def volume_ratios(self, displacements: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Det F of every domain of the first term, (D,); zero or less where it is inverted."""
-        return self.terms[0].volume_ratios(displacements)
-
 
 def solid(
     mesh: TetMesh,
@@ -128,21 +123,14 @@ def solid(
         factor = domains.young_scale
         return StrainTerm(averaged, volumes, first * factor, shear * factor)
 
-    def around(
-        group: Callable[
-            [NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]], SmoothingDomains
-        ],
-    ) -> SmoothingDomains:
-        return group(mesh.tets, mesh.tet_volumes, scale)
-
-    count = len(mesh.nodes)
+    count, each = len(mesh.nodes), (mesh.tets, mesh.tet_volumes, scale)
     if formulation_checked(formulation) == LINEAR:
         whole = tet_domains(mesh.tet_volumes, scale)
         return Solid((term(whole, first_lame, shear_modulus),), count, law)
     if first_lame <= 0:
-        return Solid((term(around(edge_domains), first_lame, shear_modulus),), count, law)
-    shear_term = term(around(edge_domains), 0.0, shear_modulus)
-    return Solid((shear_term, term(around(node_domains), first_lame, 0.0)), count, law)
+        return Solid((term(edge_domains(*each), first_lame, shear_modulus),), count, law)
+    shear_term = term(edge_domains(*each), 0.0, shear_modulus)
+    return Solid((shear_term, term(node_domains(*each), first_lame, 0.0)), count, law)
 
 
 def _tet_gradients(mesh: TetMesh) -> csr_array:
