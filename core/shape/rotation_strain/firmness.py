@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 
 from ...body.soft_body import SoftBody
 from ..solid.free_solid import FreeSolid
+from ..solid.held_solid import led_to
 from .beside.beside_tools import Beside, beside_tools, between_tools
-from .finger_load import FingerLoad, let_go, on_free_nodes, totals
+from .finger_load import FingerLoad, joined, let_go, on_free_nodes, totals
 from .linear_press import LinearPress
 from .pressed import LINEAR, Found, Pressed, blended, through
 from .relaxation import Relaxation, Rest
@@ -33,6 +34,8 @@ Array = NDArray[np.float64]
 DEPTHS, ON_WAY, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), (0.5, 1.0), 0.5, 0.75
 # Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
 CLOSE, MOST_STEPS = 0.001, 1000
+# Steps for nodes that a hand holds one by one; where they are not enough Newton's method goes on.
+HELD_STEPS = 200
 # What so many steps may leave of it where it counts as found: of forces it is less, by square.
 ENOUGH = 0.01
 
@@ -144,24 +147,51 @@ class FirmBody:
         """
         whole = LinearPress.of(self.solid, loads)
         goes_on = self._led_on(whole, before) if before is not None else None
-        known, rest = goes_on or self._led_by(whole, depths)
+        are_held = self._are_held(loads)
+        known, rest = goes_on or self._led_by(whole, depths, are_held=are_held)
         if by_nodes and max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
             each = LinearPress.of(self.solid, loads, by_nodes=True)
             others, other_rest = self._led_by(each, depths)
             if max(others) > max(known):
-                return self._told(whole, others, other_rest)
-        told = self._told(whole, known, rest)
-        on = rest if told.firmness.is_whole else None
+                return self._told(whole, others, _displacements(other_rest))
+        moved = _displacements(rest)
+        if max(known) < DEPTHS[-1] and are_held:
+            moved = self._held(whole, loads, known, moved)
+        told = self._told(whole, known, moved)
+        on = rest if told.firmness.is_whole and rest and moved is rest.displacements else None
         return replace(told, found=Found(None, on, told.firmness))
 
-    def _told(self, whole: LinearPress, known: dict[float, float], rest: Rest | None) -> Pressed:
-        """What G at some shares of the depth, and the rest at the deepest, tell of a press."""
+    def _are_held(self, loads: Sequence[FingerLoad]) -> bool:
+        """Whether a hand holds nodes of a pinned body, each by itself."""
+        each = all(load.sticks and len(load.nodes) == 1 for load in loads)
+        return each and self.solid.motions is None
+
+    def _held(
+        self,
+        whole: LinearPress,
+        loads: Sequence[FingerLoad],
+        known: dict[float, float],
+        moved: Array | None,
+    ) -> Array:
+        """The body as far as its held nodes can be led from the deepest known, which is told."""
+        begin, start = max(known), np.zeros_like(whole.linear) if moved is None else moved
+        nodes = np.searchsorted(self.solid.free, np.setdiff1d(joined(loads)[0], self.body.fixed))
+        way = whole.linear[nodes]
+        depth, moved = led_to(self.solid, nodes, way, begin, start)
+        if depth > begin:
+            forces = self.solid.forces(moved)[nodes]
+            work = depth * float((whole.forces[nodes] * way).sum())
+            known[depth] = float((forces * way).sum()) / work
+        return moved
+
+    def _told(self, whole: LinearPress, known: dict[float, float], at: Array | None) -> Pressed:
+        """What G at some shares of the depth, and the body at the deepest, tell of a press."""
         deepest = max(known)
         is_whole = deepest == DEPTHS[-1]
         told = [
             (depth * depth * whole.energy, known[depth]) for depth in sorted(set(known) - {0.0})
         ]
-        moved = whole.met(self.solid, rest.displacements) if rest and is_whole else None
+        moved = None if at is None or not is_whole else whole.met(self.solid, at)
         return Pressed(replace(through(told), is_whole=is_whole), whole.energy, moved)
 
     def _led_on(
@@ -179,18 +209,20 @@ class FirmBody:
         return known, rest
 
     def _led_by(
-        self, press: LinearPress, depths: Sequence[float]
+        self, press: LinearPress, depths: Sequence[float], *, are_held: bool = False
     ) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and that at the deepest."""
         known, rest = {0.0: 1.0}, None
-        before = 0.0
+        before, most, enough = 0.0, MOST_STEPS, ENOUGH
+        if are_held:
+            most, enough = HELD_STEPS, CLOSE
         for depth in depths:
             ways = depth * press.ways
-            further = self.relaxation.led(press.patterns, ways, CLOSE, MOST_STEPS, rest)
+            further = self.relaxation.led(press.patterns, ways, CLOSE, most, rest)
             share = float(further.forces @ press.ways) / (depth * press.work)
             # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
             falls = press.is_of_tools and depth * share < before
-            if further.left > ENOUGH or falls or press.swings(further.displacements, depth):
+            if further.left > enough or falls or press.swings(further.displacements, depth):
                 break
             rest, before = further, depth * share
             known[depth] = share
@@ -202,3 +234,7 @@ def _told_beside(found: Sequence[Beside]) -> Pressed:
     curve, whole = through([(one.energy, one.share) for one in found]), found[-1]
     known = Found(whole.kept, None, curve)
     return Pressed(curve, whole.energy, whole.kept.displacements, known)
+
+
+def _displacements(rest: Rest | None) -> Array | None:
+    return None if rest is None else rest.displacements

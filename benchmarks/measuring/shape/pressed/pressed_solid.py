@@ -28,7 +28,7 @@ PLACES = np.array([[4.0, 1.0, 1.0], [1.0, 4.0, 1.0], [1.0, 1.0, 4.0]]) / 6.0
 # to begin with, and at the end.
 PENALTIES = (30.0, 300.0)
 # A held point's spring, per pascal and metre of edge.
-HOLD = 300.0
+HOLD = 3e4
 
 
 @dataclass(frozen=True, eq=False)
