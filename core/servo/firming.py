@@ -22,9 +22,9 @@ from ..shape.shapes import Shape, pressed_by
 
 # It is looked for deeper than fingers are that move: as deep as they will be in so many times as
 # long as the last look took, the first one so many seconds; times the depth, at least and at most,
-# and at most of a body that nobody holds, whose weight would be as much larger.
+# but of a pinned body to this share of its size: what nobody holds would weigh as much more.
 LOOKS_AHEAD, TAKES = 1.2, 0.1
-AHEAD, FARTHEST_AHEAD, LYING_AHEAD = 1.2, 30.0, 1.6
+AHEAD, FARTHEST_AHEAD, REACH = 1.2, 1.6, 0.04
 # Fingers whose forces changed by less than this share press as they did; by less than the other
 # between two calls, they are at rest.
 SAME, AT_REST = 0.03, 1e-6
@@ -97,7 +97,8 @@ class Firming:
         """
         loads = self.pressing(snapshot)
         rests, self._before = alike(loads, self._before, AT_REST), loads
-        deeper, self._seen = _deeper(self._seen, snapshot, young_modulus), snapshot
+        depth, speed = _going(self._seen, snapshot, young_modulus)
+        self._seen = snapshot
         is_other, self._shape = shape is not self._shape, shape
         if is_other:
             self._places.forget()
@@ -108,9 +109,7 @@ class Firming:
             self._tell(self._places.at(loads))
         if self._is_looking(snapshot.time):
             return
-        further = 1.0 + deeper * LOOKS_AHEAD * self._took
-        farthest = LYING_AHEAD if self.body.is_free else FARTHEST_AHEAD
-        ahead = 1.0 if rests else min(max(further, AHEAD), farthest)
+        ahead = 1.0 if rests else self._ahead(depth, speed)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
             return
         if not rests:
@@ -122,6 +121,14 @@ class Firming:
         self._finding = self._worker.submit(
             _firmness, shape, self._looked, young_modulus, snapshot.held
         )
+
+    def _ahead(self, depth: float, speed: float) -> float:
+        """How many times as deep fingers will be by the end of the next look that go on so."""
+        if not depth > 0.0:
+            return AHEAD
+        size = 0.0 if self.body.is_free else float(np.ptp(self.body.mesh.nodes, axis=0).max())
+        goal = depth + LOOKS_AHEAD * self._took * speed
+        return max(min(goal, max(FARTHEST_AHEAD * depth, REACH * size)) / depth, AHEAD)
 
     def _is_looking(self, now: float) -> bool:
         """Whether a look goes on; what was found by one that has ended is told."""
@@ -220,16 +227,20 @@ class Firming:
             self.servo.set_firmness(told.energies, told.shares)
 
 
-def _deeper(before: Snapshot | None, now: Snapshot, young_modulus: float) -> float:
-    """By what share of their depth fingers go deeper in a second: by half the share of the energy
-    that a linear body holds which is the work that they do on it.
+def _going(before: Snapshot | None, now: Snapshot, young_modulus: float) -> tuple[float, float]:
+    """How deep fingers are in, m, and how fast they go deeper, m/s: by what they hold and do on a
+    linear body, over the forces on them.
     """
-    if before is None or not now.time > before.time or not now.held > 0.0:
-        return 0.0
-    fingers = zip(now.fingers, before.fingers, strict=False)
-    work = -sum(float(one.contact_force @ (one.probe - was.probe)) for one, was in fingers)
-    linear = work / (now.firmness * young_modulus * (now.time - before.time))
-    return 0.5 * linear / now.held
+    forces = [one.contact_force / (now.firmness * young_modulus) for one in now.fingers]
+    pressed = sum(float(np.linalg.norm(force)) for force in forces)
+    if not pressed > 0.0:
+        return 0.0, 0.0
+    depth = 2.0 * now.held / pressed
+    if before is None or not now.time > before.time:
+        return depth, 0.0
+    pairs = zip(forces, now.fingers, before.fingers, strict=False)
+    work = -sum(float(force @ (one.probe - was.probe)) for force, one, was in pairs)
+    return depth, work / (pressed * (now.time - before.time))
 
 
 def _firmness(shape: Shape, look: _Look, young_modulus: float, held: float) -> Firmness:

@@ -5,11 +5,11 @@ Small bodies are computed on their own nodes, larger ones by :mod:`.two_levels`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from threading import Lock
-from typing import Protocol
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,10 @@ from .lying import met
 from .pressed import LINEAR, Found, Pressed
 from .relaxation import Relaxation, relaxation
 from .two_levels import TwoLevels
+
+Array = NDArray[np.float64]
+# Displacements (n, 3) under forces (k, 3) on nodes (k,), at unit modulus, of one that is let go.
+Draw: TypeAlias = Callable[[NDArray[np.int64], Array, Array | None], Array]
 
 # Forces that change by no more than this share are those of a press that rests.
 STILL = 1e-6
@@ -94,10 +98,10 @@ class RotationStrainShape:
     def displacements(
         self,
         nodes: NDArray[np.int64],
-        nodal_forces: NDArray[np.float64],
+        nodal_forces: Array,
         young_modulus: float | None = None,
-        let_go: NDArray[np.float64] | None = None,
-    ) -> NDArray[np.float64]:
+        let_go: Array | None = None,
+    ) -> Array:
         """Displacements (n, 3) of the free surface nodes, metres; see :class:`.shapes.Shape`.
 
         Raises
@@ -110,7 +114,7 @@ class RotationStrainShape:
             return self._body.deform(nodes, nodal_forces, young_modulus)
         modulus = self._body.modulus(young_modulus)
         forces = np.asarray(nodal_forces, dtype=np.float64).reshape(-1, 3) / modulus
-        return made.displacements(np.asarray(nodes).reshape(-1), forces, let_go)
+        return made.draw(np.asarray(nodes).reshape(-1), forces, let_go)
 
     def pressed(
         self, loads: Sequence[FingerLoad], young_modulus: float, ahead: float = 1.0
@@ -163,10 +167,12 @@ class RotationStrainShape:
 
     def _make(self) -> _Made | None:
         """Stage by stage, between which :meth:`close` is heeded."""
+        steps, draw = self._plan.steps, None
         if self._plan.lattice_nodes:
             levels = TwoLevels.of(self._body, self._plan.lattice_nodes)
+            draw = _on_lattice(self._body, levels, steps)
             if len(self._body.mesh.nodes) - len(self._body.fixed) > MOST_FELT:
-                return None if self._is_ended else _OnLattice(self._body, levels, self._plan.steps)
+                return None if self._is_ended else _Made(draw)
         solid = FreeSolid.of(self._body)
         if self._goes_on(0.2):
             _ = solid.factor
@@ -176,9 +182,7 @@ class RotationStrainShape:
         firm = FirmBody(self._body, solid, relaxing.another())
         if self._is_ended:
             return None
-        if self._plan.lattice_nodes:
-            return _OnLattice(self._body, levels, self._plan.steps, firm)
-        return _OnOwnNodes(solid, relaxing, self._plan.steps, firm)
+        return _Made(draw or _on_own_nodes(firm, relaxing, steps), firm)
 
     def _goes_on(self, share: float) -> bool:
         if not self._is_ended:
@@ -186,58 +190,33 @@ class RotationStrainShape:
         return not self._is_ended
 
 
-class _Made(Protocol):
-    @property
-    def firm(self) -> FirmBody | None:
-        """What tells the force."""
-        ...
-
-    def displacements(
-        self,
-        nodes: NDArray[np.int64],
-        forces: NDArray[np.float64],
-        let_go: NDArray[np.float64] | None,
-    ) -> NDArray[np.float64]:
-        """Displacements (n, 3) under forces (k, 3) on nodes (k,), at unit modulus."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
-class _OnOwnNodes:
-    solid: FreeSolid
-    relaxation: Relaxation
-    steps: int
-    firm: FirmBody
+class _Made:
+    """How it is drawn, and what tells the force."""
 
-    def displacements(
-        self,
-        nodes: NDArray[np.int64],
-        forces: NDArray[np.float64],
-        let_go: NDArray[np.float64] | None,
-    ) -> NDArray[np.float64]:
-        held = self.solid.on_free_nodes(nodes, forces)
-        seen = self.solid.surface
-        moved = self.relaxation.relaxed(held, self.steps)[seen]
-        if self.solid.motions is None:
-            return moved
-        linear = self.firm.body.deform(nodes, forces, 1.0)
-        return met(self.solid.motions.of_nodes[seen], moved, linear, held[seen], let_go)
-
-
-@dataclass(frozen=True, eq=False)
-class _OnLattice:
-    body: SoftBody
-    levels: TwoLevels
-    steps: int
+    draw: Draw
     firm: FirmBody | None = None
 
-    def displacements(
-        self,
-        nodes: NDArray[np.int64],
-        forces: NDArray[np.float64],
-        let_go: NDArray[np.float64] | None,
-    ) -> NDArray[np.float64]:
-        linear = self.body.deform(nodes, forces, 1.0)
-        places = self.body.free_index(nodes)
+
+def _on_own_nodes(firm: FirmBody, relaxing: Relaxation, steps: int) -> Draw:
+    solid, seen = firm.solid, firm.solid.surface
+
+    def draw(nodes: NDArray[np.int64], forces: Array, let_go: Array | None) -> Array:
+        held = solid.on_free_nodes(nodes, forces)
+        moved = relaxing.relaxed(held, steps)[seen]
+        if solid.motions is None:
+            return moved
+        linear = firm.body.deform(nodes, forces, 1.0)
+        return met(solid.motions.of_nodes[seen], moved, linear, held[seen], let_go)
+
+    return draw
+
+
+def _on_lattice(body: SoftBody, levels: TwoLevels, steps: int) -> Draw:
+    def draw(nodes: NDArray[np.int64], forces: Array, let_go: Array | None) -> Array:
+        linear = body.deform(nodes, forces, 1.0)
+        places = body.free_index(nodes)
         free = places >= 0
-        return self.levels.corrected(linear, places[free], forces[free], self.steps, let_go)
+        return levels.corrected(linear, places[free], forces[free], steps, let_go)
+
+    return draw
