@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 # Times as firm as nodes are at rest: so that what holds them gives way by nothing that is seen.
 FIRM = 1e5
 # Forces that are not balanced, as a share of the springs', and the shortest part of a way.
-BALANCED, SHORTEST = 1e-10, 1 / 64
+BALANCED, SHORTEST = 1e-10, 1 / 16
 
 
 @dataclass(frozen=True, eq=False)
