@@ -29,15 +29,28 @@ from .relaxation import Relaxation, Rest
 
 Array = NDArray[np.float64]
 
-# Shares of the depth to which the body is led one after the other, on the way of a press that goes
-# on, too; and the one beside the last at which firmness is told.
-DEPTHS, ON_WAY, HALF, BETWEEN = (0.25, 0.5, 0.75, 1.0), (0.5, 1.0), 0.5, 0.75
-# Where it is taken for found: what is missed and rest, as shares of all, by energy; steps to it.
-CLOSE, MOST_STEPS = 0.001, 1000
-# Steps for nodes that a hand holds one by one; where they are not enough Newton's method goes on.
-HELD_STEPS = 200
-# What so many steps may leave of it where it counts as found: of forces it is less, by square.
-ENOUGH = 0.01
+# Shares of the depth at which a tool's contact is told beside the whole.
+HALF, BETWEEN = 0.5, 0.75
+# Where it is taken for found: what is missed and rest, as shares of all, by energy.
+CLOSE = 0.001
+
+
+@dataclass(frozen=True)
+class _Leading:
+    """To which shares of the depth a body is led one after the other, in how many steps at most;
+    what these may leave of it where it counts as found: of forces it is less, by square.
+    """
+
+    depths: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)
+    steps: int = 1000
+    enough: float = 0.01
+
+
+USUALLY = _Leading()
+# Of a press that goes on there is little time for looks.
+ON_WAY = _Leading((0.5, 1.0), 60)
+# Nodes that a hand holds one by one: where it does not do Newton's method goes on.
+HELD = _Leading(steps=200, enough=CLOSE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +99,7 @@ class FirmBody:
         if found is not None and found.trust == 1.0:
             return _told_beside([found])
         deeper = [one.times(ahead) for one in loads]
-        led = self._led(deeper, near, ON_WAY, by_nodes=False)
+        led = self._led(deeper, near, ON_WAY)
         if found is None:
             return led
         both = replace(led.found or Found(), kept=found.kept)
@@ -117,7 +130,8 @@ class FirmBody:
             # It would be led as far as before.
             led = Pressed(before.curve, before.curve.reach, None, before)
         else:
-            led = self._led([one.times(ahead) for one in loads], before, by_nodes=not is_known)
+            deeper = [one.times(ahead) for one in loads]
+            led = self._led(deeper, before, by_nodes=not is_known)
         known = led.firmness
         kept = before.kept if kept_out is None else kept_out.kept
         found = replace(led.found or before, kept=kept)
@@ -129,7 +143,7 @@ class FirmBody:
         weight = float(np.linalg.norm(left) / np.linalg.norm(sums, axis=1).sum())
         energy = kept_out.energy
         share = (1.0 - weight) * kept_out.share + weight * known.at(energy)
-        way = [depth * depth * energy for depth in DEPTHS if depth <= HALF]
+        way = [depth * depth * energy for depth in USUALLY.depths if depth <= HALF]
         curve = through([*((there, known.at(there)) for there in way), (energy, share)])
         beside = Pressed(curve, energy, kept_out.kept.displacements)
         return replace(blended(led, beside, kept_out.trust), found=found)
@@ -138,7 +152,7 @@ class FirmBody:
         self,
         loads: Sequence[FingerLoad],
         before: Found | None = None,
-        depths: Sequence[float] = DEPTHS,
+        leading: _Leading | None = None,
         *,
         by_nodes: bool = True,
     ) -> Pressed:
@@ -146,16 +160,18 @@ class FirmBody:
         in proportion, each by itself.
         """
         whole = LinearPress.of(self.solid, loads)
-        goes_on = self._led_on(whole, before) if before is not None else None
         are_held = self._are_held(loads)
-        known, rest = goes_on or self._led_by(whole, depths, are_held=are_held)
-        if by_nodes and max(known) < DEPTHS[-1] and not all(load.sticks for load in loads):
+        by_nodes = by_nodes and leading is None and not all(load.sticks for load in loads)
+        leading = HELD if are_held else leading or USUALLY
+        goes_on = self._led_on(whole, before, leading) if before is not None else None
+        known, rest = goes_on or self._led_by(whole, leading)
+        if by_nodes and max(known) < 1.0:
             each = LinearPress.of(self.solid, loads, by_nodes=True)
-            others, other_rest = self._led_by(each, depths)
+            others, other_rest = self._led_by(each, leading)
             if max(others) > max(known):
                 return self._told(whole, others, _displacements(other_rest))
         moved = _displacements(rest)
-        if max(known) < DEPTHS[-1] and are_held:
+        if max(known) < 1.0 and are_held:
             moved = self._held(whole, loads, known, moved)
         told = self._told(whole, known, moved)
         on = rest if told.firmness.is_whole and rest and moved is rest.displacements else None
@@ -187,7 +203,7 @@ class FirmBody:
     def _told(self, whole: LinearPress, known: dict[float, float], at: Array | None) -> Pressed:
         """What G at some shares of the depth, and the body at the deepest, tell of a press."""
         deepest = max(known)
-        is_whole = deepest == DEPTHS[-1]
+        is_whole = deepest == 1.0
         told = [
             (depth * depth * whole.energy, known[depth]) for depth in sorted(set(known) - {0.0})
         ]
@@ -195,34 +211,32 @@ class FirmBody:
         return Pressed(replace(through(told), is_whole=is_whole), whole.energy, moved)
 
     def _led_on(
-        self, press: LinearPress, before: Found
+        self, press: LinearPress, before: Found, leading: _Leading
     ) -> tuple[dict[float, float], Rest | None] | None:
         """As :meth:`_led_by`, from the rest of one that is near; None where that does not do."""
         if before.rest is None or before.curve is None:
             return None
-        rest = self.relaxation.led(press.patterns, press.ways, CLOSE, MOST_STEPS, before.rest)
-        if rest.left > ENOUGH or press.swings(rest.displacements, 1.0):
+        rest = self.relaxation.led(press.patterns, press.ways, CLOSE, leading.steps, before.rest)
+        if rest.left > leading.enough or press.swings(rest.displacements, 1.0):
             return None
-        known = {DEPTHS[-1]: float(rest.forces @ press.ways) / press.work}
+        known = {1.0: float(rest.forces @ press.ways) / press.work}
         if self.solid.motions is not None:
             known[HALF] = before.curve.at(HALF * HALF * press.energy)
         return known, rest
 
     def _led_by(
-        self, press: LinearPress, depths: Sequence[float], *, are_held: bool = False
+        self, press: LinearPress, leading: _Leading
     ) -> tuple[dict[float, float], Rest | None]:
         """G at all shares of the depth to which there is a rest, and that at the deepest."""
         known, rest = {0.0: 1.0}, None
-        before, most, enough = 0.0, MOST_STEPS, ENOUGH
-        if are_held:
-            most, enough = HELD_STEPS, CLOSE
-        for depth in depths:
+        before = 0.0
+        for depth in leading.depths:
             ways = depth * press.ways
-            further = self.relaxation.led(press.patterns, ways, CLOSE, most, rest)
+            further = self.relaxation.led(press.patterns, ways, CLOSE, leading.steps, rest)
             share = float(further.forces @ press.ways) / (depth * press.work)
             # A tool's force that falls is of a body that has turned aside, where a tool cannot go.
             falls = press.is_of_tools and depth * share < before
-            if further.left > enough or falls or press.swings(further.displacements, depth):
+            if further.left > leading.enough or falls or press.swings(further.displacements, depth):
                 break
             rest, before = further, depth * share
             known[depth] = share

@@ -9,6 +9,7 @@ from bodies.bare_body import bare_body, beam_mesh
 
 from palpate.core.mesh.paper_cube import paper_cube
 from palpate.core.mesh.tet_mesh import TetMesh
+from palpate.core.shape.rotation_strain import firmness
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad
 from palpate.core.shape.rotation_strain.firmness import FirmBody
 from palpate.core.shape.rotation_strain.pressed import FARTHER, Firmness, through
@@ -122,7 +123,7 @@ def test_without_a_load_the_body_is_linear(block):
 
 
 def test_where_no_rest_is_found_it_says_so(block, monkeypatch):
-    monkeypatch.setattr("palpate.core.shape.rotation_strain.firmness.MOST_STEPS", 0)
+    monkeypatch.setattr(firmness, "USUALLY", replace(firmness.USUALLY, steps=0))
     found = block.pressed([spread(block, 0.3)]).firmness
     assert not found.is_whole
     assert found.deepest == 1.0

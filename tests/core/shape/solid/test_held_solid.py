@@ -1,11 +1,14 @@
 """Nodes that a hand holds: rests beside a referee that leads their freedoms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bodies.bare_body import bare_body
 from referees.led_solid import settled
 
 from palpate.core.mesh.paper_cube import paper_cube
+from palpate.core.shape.rotation_strain import firmness
 from palpate.core.shape.rotation_strain.finger_load import FingerLoad
 from palpate.core.shape.rotation_strain.firmness import FirmBody
 from palpate.core.shape.rotation_strain.relaxation import relaxation
@@ -58,7 +61,7 @@ def test_it_tells_how_far_they_can_be_led(solid, top):
 
 
 def test_what_forces_do_not_lead_there_newtons_method_does(cube, solid, top, monkeypatch):
-    monkeypatch.setattr("palpate.core.shape.rotation_strain.firmness.HELD_STEPS", 8)
+    monkeypatch.setattr(firmness, "HELD", replace(firmness.HELD, steps=8))
     way = turned(solid, top, 50.0)
     loads = held(cube, solid, top, way)
     found = FirmBody(cube, solid, relaxation(solid)).pressed(loads)
