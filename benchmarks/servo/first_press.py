@@ -157,7 +157,7 @@ def main() -> int:
         for law in chosen.laws:
             bench = Bench.of(name, law)
             most_in = MOST_IN_FOAM if law == "foam" else MOST_IN
-            most = np.array([most_in, *3 * [MOST_AT_REST], MOST_AFTERWARDS])
+            most = np.array([most_in, *[MOST_AT_REST] * len(AFTER), MOST_AFTERWARDS])
             for tip, tool in (("point", None), ("ball", sphere(RADIUS))):
                 one = pressing(bench, BODIES[name], tool)
                 found, linear = off(one.led(), *one.shares())

@@ -105,7 +105,8 @@ def main() -> int:
             worst = max([worst, *np.nan_to_num(differences).tolist()])
             figures = (
                 f"{np.abs(forces).max() / np.abs(wanted).max():12.3f}{1e3 * np.abs(u).max():12.2f}"
-                f"{body.solid.terms[0].volume_ratios(u).min():12.3f}{found.load_steps:12d}{found.iterations:12d}"
+                f"{body.solid.terms[0].volume_ratios(u).min():12.3f}"
+                f"{found.load_steps:12d}{found.iterations:12d}"
             )
             print(
                 f"  {load:18s}" + figures + "".join(f"{d:12.1e}" for d in differences), flush=True

@@ -43,10 +43,11 @@ class Firmed(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Look:
-    """At what it is looked: loads of a linear body, and ``ahead`` times as deep."""
+    """At what it is looked since ``begun``: loads of a linear body, ``ahead`` times as deep."""
 
     loads: tuple[FingerLoad, ...] = ()
     ahead: float = 0.0
+    begun: float = 0.0
 
 
 @dataclass(eq=False)
@@ -78,8 +79,7 @@ class Firming:
     _places: FirmPlaces = field(default_factory=FirmPlaces)
     _before: tuple[FingerLoad, ...] = ()
     _seen: Snapshot | None = None
-    # When the look began, and how long the last one of fingers that move took, s.
-    _since: float = 0.0
+    # How long the last look at fingers that move took, s.
     _took: float = TAKES
 
     @property
@@ -107,7 +107,8 @@ class Firming:
             self._tell(LINEAR)
         elif self._told == LINEAR:
             self._tell(self._places.at(loads))
-        if self._is_looking(snapshot.time):
+        self._hear(snapshot.time)
+        if self.looks:
             return
         ahead = 1.0 if rests else self._ahead(depth, speed)
         if not loads or shape.ready < 1.0 or self._knows(loads, ahead):
@@ -117,7 +118,7 @@ class Firming:
             if known.reach > AHEAD * AHEAD * snapshot.held:
                 self._tell(known)
                 return
-        self._looked, self._since = _Look(loads, ahead), snapshot.time
+        self._looked = _Look(loads, ahead, snapshot.time)
         self._finding = self._worker.submit(
             _firmness, shape, self._looked, young_modulus, snapshot.held
         )
@@ -130,20 +131,17 @@ class Firming:
         goal = depth + LOOKS_AHEAD * self._took * speed
         return max(min(goal, max(FARTHEST_AHEAD * depth, REACH * size)) / depth, AHEAD)
 
-    def _is_looking(self, now: float) -> bool:
-        """Whether a look goes on; what was found by one that has ended is told."""
-        if self._finding is None:
-            return False
-        if not self._finding.done():
-            return True
+    def _hear(self, now: float) -> None:
+        """Tell what a look has found that has ended."""
+        if self._finding is None or not self._finding.done():
+            return
         found, self._finding = self._finding.result(), None
         # What another shape said, or of another touch, is looked for anew.
         if self._looked.loads:
             self._places.remember(self._looked.loads, found)
             self._tell(self._places.at(self._looked.loads))
             if self._looked.ahead > 1.0:
-                self._took = now - self._since
-        return False
+                self._took = now - self._looked.begun
 
     def pressing(self, snapshot: Snapshot) -> tuple[FingerLoad, ...]:
         """Loads of the fingers that touch, and of what bears the body, as a linear one would have

@@ -38,17 +38,19 @@ CLOSE = 0.001
 @dataclass(frozen=True)
 class _Leading:
     """To which shares of the depth a body is led one after the other, in how many steps at most;
-    what these may leave of it where it counts as found: of forces it is less, by square.
+    what these may leave of it where it counts as found: of forces it is less, by square. Whether
+    each of a tool's nodes is, where its forces in proportion do not.
     """
 
     depths: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)
     steps: int = 1000
     enough: float = 0.01
+    by_nodes: bool = True
 
 
 USUALLY = _Leading()
 # Of a press that goes on there is little time for looks.
-ON_WAY = _Leading((0.5, 1.0), 60)
+ON_WAY = _Leading((0.5, 1.0), 60, by_nodes=False)
 # Nodes that a hand holds one by one: where it does not do Newton's method goes on.
 HELD = _Leading(steps=200, enough=CLOSE)
 
@@ -131,7 +133,7 @@ class FirmBody:
             led = Pressed(before.curve, before.curve.reach, None, before)
         else:
             deeper = [one.times(ahead) for one in loads]
-            led = self._led(deeper, before, by_nodes=not is_known)
+            led = self._led(deeper, before, replace(USUALLY, by_nodes=not is_known))
         known = led.firmness
         kept = before.kept if kept_out is None else kept_out.kept
         found = replace(led.found or before, kept=kept)
@@ -153,28 +155,24 @@ class FirmBody:
         loads: Sequence[FingerLoad],
         before: Found | None = None,
         leading: _Leading | None = None,
-        *,
-        by_nodes: bool = True,
     ) -> Pressed:
-        """By forces that lead it to where a linear body would be; ``by_nodes``, where they do not
-        in proportion, each by itself.
-        """
+        """By forces that lead it to where a linear body would be, as usually or otherwise."""
         whole = LinearPress.of(self.solid, loads)
         are_held = self._are_held(loads)
-        by_nodes = by_nodes and leading is None and not all(load.sticks for load in loads)
         leading = HELD if are_held else leading or USUALLY
         goes_on = self._led_on(whole, before, leading) if before is not None else None
         known, rest = goes_on or self._led_by(whole, leading)
-        if by_nodes and max(known) < 1.0:
+        all_stick = all(load.sticks for load in loads)
+        if leading.by_nodes and max(known) < 1.0 and not all_stick:
             each = LinearPress.of(self.solid, loads, by_nodes=True)
             others, other_rest = self._led_by(each, leading)
             if max(others) > max(known):
                 return self._told(whole, others, _displacements(other_rest))
         moved = _displacements(rest)
         if max(known) < 1.0 and are_held:
-            moved = self._held(whole, loads, known, moved)
+            moved, rest = self._held(whole, loads, known, moved), None
         told = self._told(whole, known, moved)
-        on = rest if told.firmness.is_whole and rest and moved is rest.displacements else None
+        on = rest if told.firmness.is_whole else None
         return replace(told, found=Found(None, on, told.firmness))
 
     def _are_held(self, loads: Sequence[FingerLoad]) -> bool:

@@ -128,10 +128,9 @@ class FreeSolid:
         blocks = self.solid.tangent_blocks(np.zeros((self.node_count, 3)))
         if self.motions is None:
             return blocks
-        own = np.flatnonzero(pattern.rows == pattern.columns)
-        firmness = float(np.median(np.einsum("mii->mi", blocks[own])))
-        for node, springs in zip(*hold(self.positions, firmness), strict=True):
-            blocks[own[pattern.rows[own] == node]] += springs
+        held = hold(self.positions, pattern.usual_firmness(blocks))
+        for node, springs in zip(*held, strict=True):
+            blocks[pattern.own[node]] += springs
         return blocks
 
     def on_free_nodes(

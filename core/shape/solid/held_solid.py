@@ -42,8 +42,7 @@ class HeldSolid(Solid):
     def tangent_blocks(self, displacements: Array, *, convex: bool = False) -> Array:
         """As of :class:`Solid`, and of the springs."""
         blocks = super().tangent_blocks(displacements, convex=convex)
-        own = np.flatnonzero(self.pattern.rows == self.pattern.columns)
-        blocks[own[self.held]] += self.firmness * np.eye(3)
+        blocks[self.pattern.own[self.held]] += self.firmness * np.eye(3)
         return blocks
 
 
@@ -53,10 +52,9 @@ def led_to(
     """How far ``nodes`` (k,) of the free ones can be led along ``way`` (k, 3), as a share of it,
     from a share ``begin`` where the body is at ``start`` (f, 3); and its displacements there.
     """
-    rows, columns = body.solid.pattern.rows, body.solid.pattern.columns
-    at_rest = body.solid.tangent_blocks(np.zeros((body.node_count, 3)))[rows == columns]
-    firmness = FIRM * float(np.median(np.einsum("mii->mi", at_rest)))
     inner = body.solid
+    at_rest = inner.tangent_blocks(np.zeros((body.node_count, 3)))
+    firmness = FIRM * inner.pattern.usual_firmness(at_rest)
     held = replace(body, solid=HeldSolid(inner.terms, inner.node_count, inner.law, nodes, firmness))
     load = np.zeros((body.node_count, 3))
     load[nodes] = firmness * way

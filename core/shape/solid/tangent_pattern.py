@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +88,15 @@ class TangentPattern:
             source[order],
             (np.arange(len(source)) >= len(once))[order],
         )
+
+    @cached_property
+    def own(self) -> NDArray[np.int64]:
+        """Which of the blocks is each node's own, (N,)."""
+        return np.flatnonzero(self.rows == self.columns)
+
+    def usual_firmness(self, blocks: NDArray[np.float64]) -> float:
+        """How firm a usual node is by itself along an axis, of a matrix's blocks (m, 3, 3)."""
+        return float(np.median(np.einsum("nii->ni", blocks[self.own])))
 
     def summed(self, blocks: NDArray[np.float64]) -> NDArray[np.float64]:
         """Blocks (p, 3, 3) added at their places, (m, 3, 3) in both halves."""

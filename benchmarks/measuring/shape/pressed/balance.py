@@ -83,10 +83,9 @@ class Balance:
     def _firm(self) -> Array:
         """As firm as a node at rest, for each on its own, (m, 3, 3)."""
         solid = self.spread.solid
-        own = solid.solid.pattern.rows == solid.solid.pattern.columns
         at_rest = solid.solid.tangent_blocks(np.zeros((solid.node_count, 3)))
-        usual = float(np.median(np.einsum("mii->mi", at_rest[own])))
-        firm: Array = own[:, None, None] * (usual * np.eye(3))
+        firm = np.zeros_like(at_rest)
+        firm[solid.solid.pattern.own] = solid.solid.pattern.usual_firmness(at_rest) * np.eye(3)
         return firm
 
     def _searched(self, contact: Contact, moved: Array, way: Array, slope: float) -> Array | None:

@@ -95,12 +95,6 @@ def beside_tools(
         kept = kept_out(solid, relaxation, where, linear, moved, begin)
         return _beside(along, told, kept, energy, trust)
 
-    def on(where: Reached, begin: Array) -> Beside | None:
-        found = at(where, begin, resolved, told)
-        enters = reached.within(found.kept.displacements) - reached.within(moved)
-        through = _on_way(enters / usual_edge(body), *ENTERS)
-        return _trusted(replace(found, trust=found.trust * (1.0 - through)))
-
     narrow = 1.0 - _on_way(_pressing(reached, linear, moved), *WIDE)
     if not narrow:
         return _trusted(at(reached, begin, 1.0, along))
@@ -113,6 +107,14 @@ def beside_tools(
         return None
     # What these places miss of a linear body they miss of this one.
     told = along + narrow * (comes_back - along)
+    linearly = reached.within(moved)
+
+    def on(where: Reached, begin: Array) -> Beside | None:
+        found = at(where, begin, resolved, told)
+        enters = reached.within(found.kept.displacements) - linearly
+        through = _on_way(enters / usual_edge(body), *ENTERS)
+        return _trusted(replace(found, trust=found.trust * (1.0 - through)))
+
     found = on(bed, begin)
     # What is beneath is of the same law: as firm as the body was found to be.
     return found and on(bed.on_springs(found.share), found.kept.linear)
